@@ -13,7 +13,7 @@ OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
   RequireNotCurrent(folder);
   RequireNoOtherResult(folder, kind);
   RequireNamesFree(folder, kind, cases);
-  // Those that render, and into a folder that is there.
+  // Commands that render have a cache; with --force the folder may exist.
   const bool has_cache = kind != ResultKind::kMap && kind != ResultKind::kSlam;
   if (has_cache && !arguments.force) RequireCacheElsewhere(arguments);
   if (arguments.force) RequireOwnFiles(folder, kind, cases);

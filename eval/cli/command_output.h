@@ -1,4 +1,4 @@
-// The folder of a command's result.
+// Opens the output folder of a command.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace depthgrid::cli {
 
-// The folder for a result of this kind; what an earlier one left there goes. `inputs`: files and
-// folders that the command reads; `cases`: those of a study. Throws InputError, before anything is
-// done, for what OutputFolder does not take, for a folder of another result or of names that it
-// cannot have, and when an input would be overwritten or removed.
+// Opens the folder for a result of this kind; an earlier result in it is replaced. `inputs`: files
+// and folders that the command reads; `cases`: those of a study. Throws InputError, before any
+// work, for what OutputFolder rejects, for a folder with another result or with conflicting names,
+// and when an input would be overwritten or removed.
 OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
                         const std::vector<std::string>& inputs,
                         const std::vector<std::string>& cases = {});

@@ -1,5 +1,6 @@
-// What each subcommand of `depthgrid` takes and does. main.cc parses; these throw InputError for
-// what the user can mend (exit code 2) and anything else for a run that failed (exit code 1).
+// Arguments and functions of the subcommands of `depthgrid`. main.cc parses. The functions throw
+// InputError for what the user can fix (exit code 2), and other exceptions when a run fails (exit
+// code 1).
 #pragma once
 
 #include <cstdint>
@@ -10,7 +11,7 @@
 
 namespace depthgrid::cli {
 
-// Arguments of several commands; none of them but `set` ever changes a result.
+// Arguments of several commands; only `set` affects results.
 struct CommonArguments {
   std::string output;
   std::vector<std::string> set;  // key.path=value
@@ -21,7 +22,7 @@ struct CommonArguments {
 };
 
 struct ScenesArguments {
-  std::string scene;  // empty: all that is shipped
+  std::string scene;  // empty: list all shipped scenes
   std::string plan;   // a picture of the scene from above; empty: none
   bool force = false;
 };
@@ -34,7 +35,7 @@ struct RenderArguments {
 };
 void Render(const RenderArguments& arguments);
 
-// How a result is written; part of no result.
+// How a result is written; does not affect the result.
 struct OutputArguments {
   MapMode map_mode = MapMode::kTrinary;
   std::string video;  // empty: none
@@ -57,10 +58,10 @@ struct MapArguments {
   std::string format;  // the three replace keys of `sequence` when not empty
   std::string camera;
   std::string world_up;
-  std::string map;           // a run's folder to go on from; empty: none
-  std::string start;         // the base's place in that map, "X,Y,YAW_DEG"; empty: it is found
-  std::string start_within;  // metres that it may be off; empty: the usual
-  bool localise = false;     // in that map, without changing it
+  std::string map;           // a run's folder to continue from; empty: none
+  std::string start;         // the base's initial pose in that map, "X,Y,YAW_DEG"; empty: searched
+  std::string start_within;  // possible error of `start`, metres; empty: the default
+  bool localise = false;     // only localise in that map, without changing it
   OutputArguments output;
   CommonArguments common;
 };
@@ -96,7 +97,7 @@ struct EvalTrajectoryArguments {
   double max_difference_s = -1.0;  // negative: the convention's
   double time_offset_s = 0.0;      // to be added to the estimate's stamps
   std::string errors;              // CSV to write; empty: none
-  bool force = false;              // though that one is there
+  bool force = false;              // overwrite an existing file
   bool json = false;
 };
 void EvalTrajectory(const EvalTrajectoryArguments& arguments);
@@ -116,7 +117,7 @@ struct SweepArguments {
   std::vector<std::string> merge;  // folders of parts
   std::string executor = "local";
   std::string slurm_options;  // for sbatch
-  int slurm_tasks = 0;        // 0: as many as have work for long enough
+  int slurm_tasks = 0;        // 0: as many as have enough work each
   bool dry_run = false;
   CommonArguments common;
 };
@@ -144,8 +145,8 @@ void Ablate(const AblateArguments& arguments);
 
 struct ReportArguments {
   std::string folder;
-  std::string output;  // another folder for the page; empty: the same
-  bool force = false;  // though that one is not empty
+  std::string output;  // another folder for the page; empty: `folder`
+  bool force = false;  // even if that one is not empty
 };
 void Report(const ReportArguments& arguments);
 

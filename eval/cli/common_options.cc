@@ -11,8 +11,8 @@
 namespace depthgrid::cli {
 namespace {
 
-// A file named on the command line is meant from the working folder; one named in an experiment,
-// whose keys these override, from the experiment's folder.
+// File names on the command line are relative to the current folder; those in an experiment, whose
+// keys these override, to the experiment's folder.
 std::string WithFileFromHere(std::string assignment) {
   for (const std::string key : {"scene=", "trajectory="}) {
     if (!assignment.starts_with(key)) continue;
@@ -39,7 +39,7 @@ void AddSet(CLI::App& app, CommonArguments& common, const char* meaning) {
 CLI::Option* MeantFolder(CLI::Option* option) {
   return option->transform(CLI::Validator(
       [](std::string& path) {
-        std::error_code error;  // whoever makes the folder says so
+        std::error_code error;  // errors are reported when the folder is created
         const auto around = std::filesystem::path(path).parent_path();
         if (around.empty() || std::filesystem::exists(around, error)) return "";
         const auto meant = std::filesystem::weakly_canonical(path, error);
@@ -69,7 +69,7 @@ void AddCache(CLI::App& app, CommonArguments& common) {
   app.add_flag("--no-cache", common.no_cache, "Render everything anew");
 }
 
-// The transformer alone would show its numbers in messages.
+// CLI11's transformer alone would show the enum's numbers in messages.
 void AddMapMode(CLI::App& app, MapMode& mode) {
   const std::map<std::string, MapMode> modes = {
       {"trinary", MapMode::kTrinary}, {"scale", MapMode::kScale}, {"raw", MapMode::kRaw}};
@@ -88,7 +88,7 @@ void AddOutputForms(CLI::App& app, OutputArguments& output) {
       ->type_name("FILE");
 }
 
-// --keys prints and ends, whatever else is given, like --help.
+// --keys prints the keys and exits, like --help, whatever else is given.
 void AddKeys(CLI::App& app, std::string (*keys)()) {
   app.add_flag_callback(
       "--keys",

@@ -1,4 +1,4 @@
-// Options that several commands have.
+// Command-line options of several commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -13,14 +13,15 @@ constexpr const char* kSetMeaning = "Override a key: key.path=value (repeat for 
 // Of commands without --keys.
 constexpr const char* kSetOfExperimentMeaning =
     "Override a key: key.path=value (repeat for more); `depthgrid run --keys` lists them";
-// `meaning`: what --set takes, in --help.
+// `meaning`: the text in --help.
 void AddSet(CLI::App& app, CommonArguments& common, const char* meaning = kSetMeaning);
-// Of an option that names a folder to make: x/../out is out, also where there is no x.
+// For an option that names a folder to create: normalises the path, so that x/../out is out even if
+// there is no x.
 CLI::Option* MeantFolder(CLI::Option* option);
 constexpr const char* kForceMeaning =
     "Write into a folder that is not empty: what an earlier such command wrote there is removed, "
     "all other files stay; never overwrites a file that this command reads";
-// `force_meaning`: what --force does, in --help.
+// `force_meaning`: the text of --force in --help.
 void AddOutput(CLI::App& app, CommonArguments& common, const char* force_meaning = kForceMeaning);
 void AddThreads(CLI::App& app, CommonArguments& common);
 void AddCache(CLI::App& app, CommonArguments& common);

@@ -15,7 +15,7 @@
 namespace depthgrid::cli {
 namespace {
 
-// `option` is that of `own`.
+// `option`: the name of the option that gave `own`.
 std::vector<Condition> ConditionsOf(const std::vector<std::string>& both, const char* option,
                                     const std::vector<std::string>& own) {
   std::vector<Condition> conditions;
@@ -31,7 +31,7 @@ std::vector<Condition> ConditionsOf(const std::vector<std::string>& both, const 
   return conditions;
 }
 
-// The test goes by ranks: a few large differences the other way can turn the mean.
+// The test uses ranks, so the mean may have the other sign because of a few large differences.
 std::string BetterByRanks(const char* side, bool mean_agrees) {
   return fmt::format("{} better{}", side, mean_agrees ? "" : " by ranks, not by the mean");
 }
@@ -65,7 +65,7 @@ std::vector<std::string> RowOf(const MetricComparison& c) {
       p.mean_interval
           ? fmt::format("[{}, {}]", Short(p.mean_interval->low), Short(p.mean_interval->high))
           : "-";
-  // Of a score that should have a value its distance from it is compared.
+  // For a score with a target, the distance from it is compared.
   const std::string what = c.target ? DistanceName(c.metric, *c.target) : c.metric;
   return {what,
           c.better == Better::kNeither ? "-" : NameOf(c.better),
@@ -80,7 +80,7 @@ std::vector<std::string> RowOf(const MetricComparison& c) {
           TextOf(c)};
 }
 
-// Rows that rest on fewer pairs than the table's head says.
+// Lists rows with fewer pairs than the table's head states.
 void PrintFewerPairs(const Comparison& comparison) {
   std::vector<std::string> rows;
   for (const MetricComparison& c : comparison.metrics) {
@@ -108,7 +108,7 @@ void PrintLeftOut(const Comparison& comparison) {
   print(comparison.without_direction, "of which neither more nor less is better");
 }
 
-// How many pairs a verdict takes, where there are too few for every row.
+// Prints how many pairs a verdict needs, if there are too few for every row.
 void PrintTooFew(const Comparison& comparison) {
   const int most = comparison.most_rows;
   const int rows = static_cast<int>(comparison.metrics.size());

@@ -14,7 +14,7 @@
 namespace depthgrid::cli {
 namespace {
 
-// Whether a file could not even be looked for under the name that the user gave.
+// Whether the error is about the file name itself, as the user gave it.
 bool IsOfName(const std::filesystem::filesystem_error& error) {
   const std::error_code& code = error.code();
   return code == std::errc::permission_denied || code == std::errc::filename_too_long ||
@@ -34,18 +34,18 @@ int Complain(const std::string& message, int exit_code) {
 }
 
 int ComplainOf(const std::exception& error) {
-  // Whatever came of being stopped, that is what happened.
+  // After an interrupt, any other error is a consequence of it.
   if (const auto exit_code = InterruptExitCode()) return Complain(InterruptText(), *exit_code);
   if (const auto* of_files = dynamic_cast<const std::filesystem::filesystem_error*>(&error)) {
     const std::string why = of_files->code().message();
-    if (!of_files->path2().empty()) {  // of two, the one that was to be written
+    if (!of_files->path2().empty()) {  // of two paths, the second is the one to be written
       return Complain(of_files->path2().string() + ": cannot be written: " + why, kFailed);
     }
     return Complain(of_files->path1().string() + ": " + why,
                     IsOfName(*of_files) ? kBadInput : kFailed);
   }
   const auto* of_system = dynamic_cast<const std::system_error*>(&error);
-  if (of_system != nullptr && std::ferror(stdout) != 0) {  // fmt names no file
+  if (of_system != nullptr && std::ferror(stdout) != 0) {  // fmt does not name the file
     return Complain(CannotPrint(of_system->code().message()), kFailed);
   }
   if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {

@@ -1,4 +1,4 @@
-// How the program ends: exit codes, and the one line that says why.
+// Exit codes, and the one-line error message.
 #pragma once
 
 #include <exception>
@@ -10,9 +10,9 @@ constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
-// Prints one line, whatever the message holds. Returns the exit code.
+// Prints the message as one line, whatever it contains. Returns the exit code.
 int Complain(const std::string& message, int exit_code);
-// Of what a command threw, with the exit code that belongs to it.
+// Reports an exception of a command; returns the exit code for it.
 int ComplainOf(const std::exception& error);
 
 }  // namespace depthgrid::cli

@@ -50,7 +50,7 @@ void ProgressBar::Show(int done, int total) {
   if (!on_terminal_ || total <= 0) return;
   constexpr std::chrono::milliseconds kRedraw{100};
   const auto now = Clock::now();
-  if (!first_) first_ = {done, now};  // what was before says nothing of the rate
+  if (!first_) first_ = {done, now};  // earlier progress does not count for the rate
   if (shown_ && now - last_drawn_ < kRedraw && done < total) return;
   constexpr int kBarWidth = 30;
   const int filled = static_cast<int>(static_cast<long long>(kBarWidth) * done / total);
@@ -79,7 +79,7 @@ void SayReport(const std::string& folder) {
 std::string Printable(std::string text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   for (std::size_t i = 0; i < text.size();) {
-    // Bytes that the first one announces; those that follow are 10xxxxxx.
+    // Length of the sequence, from its first byte; the following bytes are 10xxxxxx.
     const unsigned char first = byte(i);
     const std::size_t length = first < 0x80                     ? 1
                                : first >= 0xc2 && first < 0xe0  ? 2
@@ -102,7 +102,7 @@ void Warn(const std::vector<std::string>& warnings) {
 
 void OpenStandardStreams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    // open() takes the lowest number that is free: this one.
+    // open() returns the lowest free descriptor, which is this one.
     if (fcntl(stream, F_GETFD) == -1) open("/dev/null", O_RDWR);
   }
 }

@@ -1,5 +1,4 @@
-// What the program says to a person at a terminal. Results go to standard output, everything else
-// to standard error.
+// Messages for the user. Results go to standard output, everything else to standard error.
 #pragma once
 
 #include <chrono>
@@ -12,14 +11,15 @@
 
 namespace depthgrid::cli {
 
-// On standard error. Words that cannot be written there (a full disk) are lost: they are no result,
-// and what is being done goes on.
+// Prints to standard error. Failures (such as a full disk) are ignored, because messages are not
+// results.
 void SayAside(const std::string& words);
 
-// After the last frame all poses are adjusted: of a long run for a minute or more.
+// Shown after the last frame, while all poses are adjusted; for a long run that takes a minute or
+// more.
 inline const char* const kFinishingMap = "finishing the map";
 
-// A bar with rate and time left; draws nothing unless standard error is a terminal.
+// A progress bar with rate and remaining time; draws nothing unless standard error is a terminal.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string label);
@@ -28,11 +28,11 @@ class ProgressBar {
   ProgressBar& operator=(const ProgressBar&) = delete;
 
   void Show(int done, int total);
-  // Puts a few words in the bar's place, for work whose end is not known; terminals only.
+  // Shows a text in place of the bar, for work of unknown duration; on terminals only.
   void Say(const std::string& words);
-  // Takes the bar away, so that something else can be said.
+  // Removes the bar, so that something else can be printed.
   void Clear();
-  // `then`: what is being done once all is shown to be done; empty: nothing.
+  // `then`: text to show once all is done, for the work that follows; empty: none.
   Progress AsProgress(const std::string& then = "");
 
  private:
@@ -49,29 +49,29 @@ class ProgressBar {
   Clock::time_point last_drawn_;
 };
 
-// Where the page of what was done lies.
+// Prints the path of the report page.
 void SayReport(const std::string& folder);
-// One line whatever it quotes of a damaged file: control characters and bytes that are no UTF-8
-// become '?'.
+// Makes one printable line: control characters and bytes that are not UTF-8, as from a damaged
+// file, become '?'.
 std::string Printable(std::string text);
 
 void Warn(const std::vector<std::string>& warnings);
 
-// A standard stream that the caller closed would be the first file the program opens, and words for
-// the screen would be written into it.
+// Opens standard streams that the caller closed. Otherwise the first file that the program opens
+// would get a stream's number, and messages would be written into it.
 void OpenStandardStreams();
-// The message of results that could not be printed.
+// The error message when results cannot be printed.
 std::string CannotPrint(const std::string& why);
-// What was printed reached its file or pipe; throws std::runtime_error when it did not (a full
-// disk), so that half a table is not taken for a whole one.
+// Flushes standard output. Throws std::runtime_error when output was lost (as on a full disk), so
+// that half a table is not taken for a whole one.
 void FinishOutput();
 
-// Columns as wide as their widest cell; the first is left-aligned, the others right-aligned.
+// Text of a table; the first column is left-aligned, the others are right-aligned.
 std::string Table(const std::vector<std::vector<std::string>>& rows);
 
-// Four significant digits, whatever the size.
+// Four significant digits.
 std::string Short(double value);
-// "-" for nothing; what is 0 in so many digits has no sign.
+// With `digits` decimals; "-" if empty; never "-0".
 std::string Number(const std::optional<double>& value, int digits);
 
 int ThreadsOr(int requested);

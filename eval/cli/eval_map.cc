@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 using Row = std::vector<std::string>;
 
-// A run's folder holds both maps.
+// Rejects a run's folder, which contains both maps.
 void RequireNoFolder(const std::string& path, const char* name) {
   const fs::path inside = fs::path(path) / name;
   if (!fs::exists(inside)) return;
@@ -32,13 +32,13 @@ void RequireNoFolder(const std::string& path, const char* name) {
                                      ShellWord(inside.string())));
 }
 
-// A trinary file keeps states only, of which a calibration would say nothing.
+// A trinary file has only states, so its calibration is meaningless.
 bool HoldsProbabilities(const OccupancyMap& map) {
   return std::any_of(map.occupied_prob.begin(), map.occupied_prob.end(),
                      [](float prob) { return prob > 0.0F && prob < 1.0F; });
 }
 
-// A run's map can be drawn again with other cells; nothing for maps of anywhere else.
+// Suggests redrawing a run's map with other cells; empty for maps that are not from a run.
 std::string RemedyOf(const std::string& map, double resolution_m) {
   const fs::path beside = fs::path(map).parent_path();
   if (!fs::exists(beside / "run.yaml") || !fs::exists(beside / "scans.bin")) return "";
@@ -46,8 +46,8 @@ std::string RemedyOf(const std::string& map, double resolution_m) {
                      beside.empty() ? "." : ShellWord(beside.string()), resolution_m);
 }
 
-// How many cells of the first size make one of the second; nothing unless it is a whole number, to
-// a millionth: files print lengths in decimal.
+// Ratio of the cell sizes; empty unless it is a whole number to within 1e-6, because files give
+// lengths in decimal.
 std::optional<int> TimesLarger(double fine_m, double coarse_m) {
   constexpr double kRelativeTolerance = 1e-6;
   const double times = std::round(coarse_m / fine_m);
@@ -56,11 +56,11 @@ std::optional<int> TimesLarger(double fine_m, double coarse_m) {
   return is_whole ? std::optional(static_cast<int>(times)) : std::nullopt;
 }
 
-// The maps that are compared, in cells of one size: the larger of the two.
+// The compared maps, both in cells of the larger of the two sizes.
 struct ComparedMaps {
   StateMap truth;
   OccupancyMap estimate;
-  std::string note;  // what was done about the size of cells; empty: nothing
+  std::string note;  // how cell sizes were adapted; empty: not at all
 };
 
 std::string NoteOf(const std::string& fine, int times, double fine_m, const std::string& coarse,
@@ -71,7 +71,7 @@ std::string NoteOf(const std::string& fine, int times, double fine_m, const std:
       fine, times, times, fine_m, coarse_m, coarse);
 }
 
-// `estimate` on the truth's lattice.
+// `estimate` must be on the truth's grid.
 ComparedMaps InOneSize(StateMap truth, OccupancyMap estimate, const EvalMapArguments& paths) {
   const double truth_m = truth.geometry.resolution_m;
   const double estimate_m = estimate.geometry.resolution_m;
@@ -97,8 +97,8 @@ ComparedMaps InOneSize(StateMap truth, OccupancyMap estimate, const EvalMapArgum
   return maps;
 }
 
-// An estimate whose cells lie otherwise than the truth's: what is done about it, and its walls as
-// it has them, between whose cells a shift shows.
+// The note for an estimate whose grid is rotated or shifted by part of a cell against the truth's
+// and is therefore resampled.
 std::string RedrawnNote(const MapFile& estimate, const EvalMapArguments& paths) {
   const Pose2& off = estimate.world_from_grid;
   const std::string turned =
@@ -113,7 +113,7 @@ PlacedWalls WallsOf(const MapFile& estimate) {
   return {CellsIn(StatesOf(estimate.map), CellState::kOccupied), estimate.world_from_grid};
 }
 
-// The cells a map calls free, in cells of this size: those that hold any.
+// The free cells of a map, in cells of size `cell_m`: those that contain a free cell.
 CellSet ReadObservable(const std::string& path, const Pose2& world_from_frame, double cell_m,
                        const std::string& place_of_cells) {
   StateMap states = ReadStates(path, world_from_frame);
@@ -211,21 +211,21 @@ int KnownToBoth(const CellScores& scores) {
   return known;
 }
 
-// Of the cells that could be seen, those of which the truth knows nothing.
+// Share of the observable cells that are unknown in the truth.
 double UnknownShare(const CellScores& observable) {
   const auto& unknown = observable.confusion[static_cast<std::size_t>(CellState::kUnknown)];
   return std::accumulate(unknown.begin(), unknown.end(), 0.0) /
          std::max(1, observable.scored_cells);
 }
 
-// Scores of maps that have nothing to do with each other look like those of a bad map.
+// Warns of maps that may not belong together, because their scores look like those of a bad map.
 std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapScore& score,
                                   const std::string& observable_path) {
-  // What the truth's own poses see is known to it: in the shipped rooms all of it, of another
-  // room's 0.97 to 1.
+  // In the shipped rooms the truth knows all cells that its own poses see; of another room's
+  // observable cells it knows a share of 0.97 to 1.
   constexpr double kMostUnknown = 0.01;
-  // Walls within two cells of the truth's: of the shipped rooms' maps laid elsewhere 0.33 to 0.48,
-  // of those drawn at SLAM's own poses, 0.29 m off, 0.88.
+  // Share of walls within two cells of the truth's: 0.33 to 0.48 for misplaced maps of the shipped
+  // rooms, 0.88 for maps drawn at SLAM's own poses with 0.29 m error.
   constexpr double kLeastNearWalls = 0.5;
   constexpr int kFewWallCells = 20;
   std::vector<std::string> doubts;
@@ -256,11 +256,11 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   return doubts;
 }
 
-// A map whose black and white are read the wrong way is free where the other has walls.
+// Warns of a map whose black and white are swapped: it is free where the other has walls.
 std::optional<std::string> DoubtOfShades(const EvalMapArguments& arguments,
                                          const CellScores& scores, const MapFile& reference,
                                          const MapFile& estimate) {
-  // Most of two maps of anywhere is free in both.
+  // Any two maps are mostly free in both.
   constexpr double kSwapped = 0.8;
   constexpr int kFewCells = 20;
   const auto cells = [&](CellState truth, CellState estimated) {
@@ -277,14 +277,14 @@ std::optional<std::string> DoubtOfShades(const EvalMapArguments& arguments,
       reference.negate ? 1 : 0, arguments.reference);
 }
 
-// A motion is found to the best of what is near, however bad that is.
+// Registration always finds the best motion nearby, even if it fits badly; warns of that.
 std::optional<std::string> DoubtOfRegistration(const EvalMapArguments& arguments,
                                                const MapQuality& quality, const ScoredMaps& maps,
                                                const PlacedWalls& walls, bool is_doubted) {
   // The living room's true map mirrored has 0.52; maps of it drawn at SLAM's own poses 0.78 and
   // 0.92.
   constexpr double kLiesOver = 0.6;
-  if (!quality.walls.chamfer_m) return std::nullopt;  // none, or none to compare with
+  if (!quality.walls.chamfer_m) return std::nullopt;  // no walls in one of the maps
   const double f1 = quality.registered ? quality.registered->f1_10cm.value_or(0.0) : 0.0;
   if (f1 >= kLiesOver) return std::nullopt;
   if (const auto turn = TurnOf(maps.truth, walls, maps.scored, f1)) {
@@ -325,7 +325,7 @@ void PrintTable(const MapScore& score) {
 void EvalMap(const EvalMapArguments& arguments) {
   RequireNoFolder(arguments.reference, "truth_map.yaml");
   RequireNoFolder(arguments.estimate, "map.yaml");
-  // All on the cells of the reference, which is not redrawn.
+  // All on the reference's grid; the reference is not resampled.
   const MapFile reference = ReadMap(arguments.reference);
   const Pose2& world_from_truth = reference.world_from_grid;
   const MapFile given = ReadMap(arguments.estimate, world_from_truth);
@@ -347,7 +347,7 @@ void EvalMap(const EvalMapArguments& arguments) {
     OneGridAround(both, arguments.reference, observable->geometry, observable_path);
   }
   MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
-  // Cells that were put together have no walls of their own.
+  // Coarsened maps are compared without separate walls.
   const bool own = redrawn && note.empty();
   const PlacedWalls walls =
       own ? WallsOf(given) : PlacedWalls{CellsIn(StatesOf(estimate), CellState::kOccupied), {}};

@@ -67,16 +67,16 @@ void PrintDrift(const TrajectoryScore& score) {
   if (rows.size() > 1) fmt::print("\n{}", Table(rows));
 }
 
-// What makes errors say something else than they seem to.
+// Warnings about errors that may be misleading.
 std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vector<PosePair>& pairs,
                                   const EvalTrajectoryArguments& of) {
   constexpr double kPercent = 100.0;
-  constexpr double kFewShare = 0.5;  // more are missing than there
+  constexpr double kFewShare = 0.5;  // more missing than present
   constexpr double kMostMissing = 0.2;
-  constexpr double kLeastPathM = 1.0;  // of less, noise tells how worlds are tilted
-  // In level worlds the errors in the plane are part of those in space.
+  constexpr double kLeastPathM = 1.0;  // with less, noise determines the tilt
+  // In level worlds planar errors are part of those in space, so not larger by this factor.
   constexpr double kTilted = 2.0;
-  constexpr double kLeastErrorM = 0.01;  // of smaller ones, alignment may take any share
+  constexpr double kLeastErrorM = 0.01;  // alignment may remove any share of smaller ones
   std::vector<std::string> doubts;
   const int fewer = std::min(score.reference_poses, score.estimate_poses);
   if (!score.by_row && score.matched_poses == 1 && fewer == 1) {
@@ -108,7 +108,7 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vecto
   return doubts;
 }
 
-// The matched poses as two trajectories of the same stamps.
+// The matched poses as two trajectories with equal stamps.
 struct Matched {
   Trajectory reference;
   Trajectory estimate;
@@ -136,7 +136,7 @@ std::string ErrorsCsv(const std::vector<PosePair>& pairs, bool has_seconds) {
   return csv;
 }
 
-// Paired by stamps as the convention has it, and what is said of all poses.
+// The pairs by the convention's rule, and the scores.
 struct Paired {
   std::vector<PosePair> pairs;
   std::optional<TrajectoryScore> score;
@@ -159,7 +159,7 @@ Paired PairByStamps(const Trajectory& reference, const Trajectory& estimate, dou
   return paired;
 }
 
-// Rows that belong together have the same stamp.
+// For rows paired in order, which have been given equal stamps.
 Paired PairByRows(const TrajectoryFiles& files) {
   Paired paired = PairByStamps(files.reference, files.estimate, 0.0, "evo");
   if (!paired.score) return paired;
@@ -168,8 +168,7 @@ Paired PairByRows(const TrajectoryFiles& files) {
   return paired;
 }
 
-// When each was, and what brings them together: clocks that are known to differ, or the first
-// poses.
+// The error message for no shared stamps: the time spans, and which time offset would help.
 std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
                               const EvalTrajectoryArguments& of) {
   const auto span = [](const Trajectory& t) {

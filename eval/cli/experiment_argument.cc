@@ -67,7 +67,7 @@ std::optional<std::string> DoubtOfProfile(const std::string& name,
                      fmt::join(kept, ", "), profile);
 }
 
-// What of the overrides and of a file of the user's is idle.
+// Adds warnings about overrides and settings of a user's file without effect.
 void AddIdle(const std::string& name, const std::vector<std::string>& set,
              const IdleSettingList& idle, std::vector<std::string>& doubts) {
   const auto add = [&](const std::vector<std::string>& more) {
@@ -76,7 +76,7 @@ void AddIdle(const std::string& name, const std::vector<std::string>& set,
   add(DoubtsOfOverrides(set, idle, [&](const std::vector<std::string>& some) {
     return ToYaml(ExperimentOrScene(name, some));
   }));
-  // The shipped ones are right, whatever --set makes of them.
+  // Shipped experiments are correct, even if --set makes some of their settings idle.
   if (!IsFileName(name) || !IsExperiment(name)) return;
   Config overrides;
   for (const std::string& assignment : set) overrides.Set(assignment);
@@ -100,7 +100,8 @@ std::vector<std::string> DoubtsOfRecord(const std::string& name,
   Config given;
   for (const std::string& assignment : set) given.Set(assignment);
   Config file = ExperimentFile(path);
-  // A file of the same name is the same room somewhere else, as where somebody else repeats a run.
+  // A file with the same name counts as the same room at another path, as when someone else repeats
+  // a run.
   const auto name_of = [](const Config& config) {
     return fs::path(config.Text("scene")).filename();
   };
@@ -117,7 +118,7 @@ std::vector<std::string> DoubtsOfSettings(const std::string& name,
   doubts.insert(doubts.end(), of_camera.begin(), of_camera.end());
   std::vector<std::string> of_keys;
   AddIdle(name, set, IdleSettings(options), of_keys);
-  // Of a profile that sets nothing at all it is said there.
+  // A profile that sets nothing at all is already reported there.
   const bool sets_nothing = std::any_of(of_keys.begin(), of_keys.end(), [](const auto& doubt) {
     return doubt.starts_with("--set slam.profile=");
   });
@@ -194,7 +195,7 @@ void RequireCacheElsewhere(const CommonArguments& arguments) {
   const std::string cache = CacheFolder(arguments);
   if (cache.empty() || arguments.output.empty()) return;
   const auto plain = [](const std::string& path) {
-    std::error_code error;  // whoever uses the folder says so
+    std::error_code error;  // errors are reported when the folder is used
     const fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
     return resolved.has_filename() ? resolved : resolved.parent_path();
   };

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Why a place that was found is a guess.
+// Why a start that was found is uncertain.
 std::string WhyUncertain(const MapStart& start) {
   if (start.fits_badly()) {
     return "little of what is seen lies on it: the sequence may be of another place or begin "
@@ -35,8 +35,7 @@ std::string Numbers(const Pose2& pose) {
                      Number(DegFromRad(pose.yaw_rad), 1));
 }
 
-// "elsewhere", and where what is seen fits better than at the place that was given, as --start
-// takes it.
+// "elsewhere", with the place that fits better than the given one, in the form of --start.
 std::string Elsewhere(const MapStart& start, const Pose2& base_from_laser) {
   const FoundPlace& place = start.place;
   if (!place.second || place.second_score <= place.score) return "elsewhere";
@@ -68,7 +67,7 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
                      map, WhyUncertain(start));
 }
 
-// A place that was given is moved to where what is seen fits, by so much without a word.
+// A given start is refined to where the scans fit; smaller changes than these are not reported.
 constexpr double kLittleM = 0.05;
 constexpr double kLittleRad = RadFromDeg(3.0);
 
@@ -99,7 +98,7 @@ void SayStart(const std::string& map, const PriorMap& prior, const MapStart& sta
 
 std::string YamlOf(const std::string& map) { return (fs::path(map) / "map.yaml").string(); }
 
-// Nothing where it can be handed on under the names that a run's folder has.
+// Why the map cannot be copied under the file names of a run's folder; empty if it can.
 std::optional<std::string> WhyNotKept(const std::string& map) {
   const std::string yaml = YamlOf(map);
   try {
@@ -112,7 +111,7 @@ std::optional<std::string> WhyNotKept(const std::string& map) {
   }
 }
 
-// Of the map from that of the scans. Empty where there is none.
+// How the map's geometry differs from that drawn from the scans; empty if it does not.
 std::string Difference(const MapFile& file, const GridGeometry& drawn) {
   const GridGeometry& g = file.map.geometry;
   if (g.resolution_m != drawn.resolution_m) {
@@ -142,11 +141,12 @@ std::optional<PriorMap> OpenPrior(const MapRequest& request) {
 MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source,
                  MapperOptions& options, std::vector<std::string>& warnings) {
   const MapArguments& arguments = request.arguments;
-  // The paper's chain reads the last two submaps only: here one holds everything. Elsewhere this
-  // only says over how many frames motions are told, and how many scans are at hand.
+  // The paper's method matches against the last two submaps only, so one must hold all scans. For
+  // other methods the setting only determines over how many frames motions are reported and how
+  // many scans are kept.
   if (options.method == MapperMethod::kPaper) options.submap.scans = kAllScansInOneSubmap;
   const double within_m = request.settings.start_within_m;
-  // Those who say where the robot is mean what its poses are of.
+  // A given start is of the point that the poses are of (the base).
   const Pose2 base_from_laser = request.settings.sequence.laser.mount.base_from_laser();
   auto start = request.start ? FindStartNear(prior, *request.start * base_from_laser, source,
                                              options, within_m)
@@ -164,7 +164,7 @@ MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source
   return *std::move(start);
 }
 
-// A place in a finished map is a guess until what is seen there says the same.
+// A start in a finished map is uncertain until the scans confirm it.
 std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart& start,
                                        const MappingRun& run) {
   const std::string& map = request.arguments.map;
@@ -200,7 +200,7 @@ std::optional<std::string> DoubtOfHeight(const MapRequest& request, const Mappin
   }
   if (!of_map_m || heights_m.empty()) return {};
   const double height_m = UpperMedian(std::move(heights_m));
-  // Then nothing is in both slices.
+  // If farther apart, the two slices have nothing in common.
   const double slice_m = 2.0 * options.scan.slice_half_height_m;
   if (slice_m == 0.0 || std::abs(height_m - *of_map_m) <= slice_m) return {};
   return fmt::format(
@@ -226,7 +226,7 @@ std::vector<std::string> DoubtsOfKeptMap(const MapRequest& request, const Occupa
   if (const auto why = WhyNotKept(map)) {
     return {*why + ": the map handed on is drawn from its scans"};
   }
-  // Of other settings' cells that is no surprise, and is said.
+  // With other grid settings that is expected, and already reported.
   if (DoubtOfPrior(map, request.settings.mapper, false)) return {};
   const std::string difference = Difference(ReadMap(YamlOf(map)), MapToWrite(drawn).geometry);
   if (difference.empty()) return {};

@@ -1,5 +1,5 @@
-// What `depthgrid map --map DIR` does with the finished map: where the sequence begins in it,
-// whether it still is there later on, and the map that is handed on.
+// Handling of the finished map in `depthgrid map --map DIR`: where the sequence starts in it,
+// whether it remains in it, and the map that is output.
 #pragma once
 
 #include <optional>
@@ -13,29 +13,30 @@
 
 namespace depthgrid::cli {
 
-// The map of the run's folder that the request names; nothing where it names none.
+// The map of the run's folder that the request names; empty if it names none.
 std::optional<PriorMap> OpenPrior(const MapRequest& request);
 
-// Finds where in it `source` begins, or takes what the request says of it, prints that, and adds
-// what is doubtful of it to `warnings`. `options` become such that the mapper can go on from it.
+// Finds, or takes from the request, where `source` starts in the map, prints it, and adds doubts
+// about it to `warnings`. Changes `options` so that the mapper can continue from the map.
 MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source,
                  MapperOptions& options, std::vector<std::string>& warnings);
 
-// What the run says later on of where it began, and of the map.
+// Warnings from the finished run about its start and about the map.
 std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart& start,
                                        const MappingRun& run);
 
-// Where the last drive that added to the map had its camera at another height.
+// Warns if the last run that added to the map had its camera at another height.
 std::optional<std::string> DoubtOfHeight(const MapRequest& request, const MappingRun& run);
 
-// What was only localised in is handed on as it is, byte for byte: the map in `folder`, and its
-// scans, give way to it. But for a map whose image is missing or called otherwise, which stays the
-// one that was drawn of its scans.
+// After localisation only, copies the prior map and its scans byte by byte over those in `folder`.
+// If that map's image is missing or has another name, the map drawn from its scans is kept.
 void KeepMap(const std::string& map, const OutputFolder& folder);
-// Where its map.yaml is such a one, or not what its scans give: `drawn`.
+// Warns if the prior map.yaml could not be copied for that reason, or differs from `drawn`, the map
+// drawn from its scans.
 std::vector<std::string> DoubtsOfKeptMap(const MapRequest& request, const OccupancyMap& drawn);
 
-// The map of a run.yaml that is mapped again was made anew since. `hash`: its by now.
+// Warns if the prior map named in a run.yaml that is repeated has changed since. `hash`: its
+// present hash.
 std::optional<std::string> DoubtOfMapRecord(const MapArguments& given, const MapRequest& request,
                                             const std::string& hash);
 

@@ -22,18 +22,18 @@ namespace {
 constexpr int kSignalled = 128;
 // Written in a handler, which may run on two threads at once.
 std::atomic<int> interrupted_by = 0;         // the first signal
-std::atomic<long long> first_signal_ns = 0;  // when it came
+std::atomic<long long> first_signal_ns = 0;  // its time
 static_assert(std::atomic<int>::is_always_lock_free && std::atomic<long long>::is_always_lock_free);
 
 // One keystroke or one `timeout` may send a signal twice (to the program and to its group): within
 // this time it is one request. After it a further one ends the program at once.
 constexpr long long kSameRequestNs = 1'000'000'000;
-// For an end by the next progress report. What a person at a terminal does not yet call waiting.
+// Time allowed for the next progress report; short enough not to annoy a user.
 constexpr std::chrono::milliseconds kOrderlyEnd{500};
-bool on_terminal = false;  // standard error, known before any signal
-sem_t signalled;           // what a handler may wake a thread with
+bool on_terminal = false;  // whether standard error is one; set before any signal
+sem_t signalled;           // the one way in which a handler may wake a thread
 
-// Never destroyed: a thread may ask at the very end.
+// Never destroyed, because a thread may use it during exit.
 struct Result {
   std::mutex mutex;
   std::string what;
@@ -53,7 +53,7 @@ void WriteError(std::string_view text) {
   [[maybe_unused]] const auto shown = write(STDERR_FILENO, text.data(), text.size());
 }
 
-// Only what POSIX allows in a handler.
+// Uses only async-signal-safe functions.
 void Remember(int signal) {
   const int saved_errno = errno;
   const long long now_ns = MonotonicNs();
@@ -69,7 +69,7 @@ void Remember(int signal) {
   errno = saved_errno;
 }
 
-// Whatever the other threads are doing: _exit() asks none of them.
+// Ends the program with _exit(), whatever other threads are doing.
 [[noreturn]] void EndWhenSignalled() {
   while (sem_wait(&signalled) != 0) {
   }
@@ -86,12 +86,13 @@ void CatchInterrupts() {
   sem_init(&signalled, 0, 0);
   try {
     std::thread(EndWhenSignalled).detach();
-  } catch (const std::system_error&) {  // no thread to be had: progress reports remain
+  } catch (
+      const std::system_error&) {  // no thread available: only progress reports end the program
   }
-  // A file that grows beyond `ulimit -f` is told by write(), as a full disk is.
+  // With SIGXFSZ ignored, write() fails at `ulimit -f` as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
   for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
-    // What the caller had ignored (nohup, a shell's background jobs) stays ignored.
+    // Signals that the caller ignores (nohup, a shell's background jobs) remain ignored.
     if (std::signal(signal, &Remember) == SIG_IGN) std::signal(signal, SIG_IGN);
   }
 }

@@ -1,6 +1,6 @@
-// Ctrl-C, `kill` and a closed terminal. The next progress report throws, so that half-written
-// output is removed on the way out. A step that reports nothing for longer than a moment is ended
-// where it is, after what EndTasks are to do (mapper/io/end_task.h).
+// Handles Ctrl-C, `kill` and a closed terminal. The next progress report throws, so that partial
+// output is removed during unwinding. If there is no report for a moment, the program is ended at
+// once, after running all EndTasks (mapper/io/end_task.h).
 #pragma once
 
 #include <optional>
@@ -10,11 +10,12 @@ namespace depthgrid::cli {
 
 void CatchInterrupts();
 void ThrowIfInterrupted();
-// What is there whatever comes, such as "the run is in out": said when the program is ended.
+// A result that is already complete, such as "the run is in out"; reported when the program is
+// interrupted.
 void NoteResult(const std::string& what);
-// The line of a program that was ended.
+// The message of an interrupted program.
 std::string InterruptText();
-// 128 and the signal's number, as shells count; nothing when no signal came.
+// 128 + the signal's number, as in shells; empty without a signal.
 std::optional<int> InterruptExitCode();
 
 }  // namespace depthgrid::cli

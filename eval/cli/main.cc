@@ -32,7 +32,7 @@ struct Program {
                "depthgrid"};
   std::function<void()> chosen;
 
-  // A subcommand whose arguments live as long as the program.
+  // Adds a subcommand whose arguments live as long as the program.
   template <typename Arguments>
   std::pair<CLI::App*, std::shared_ptr<Arguments>> Add(CLI::App& parent, const std::string& name,
                                                        const std::string& what,
@@ -351,7 +351,7 @@ void AddCommands(Program& program) {
   AddReport(program);
 }
 
-// No file, folder or shipped thing is called nothing: a shell's variable is not set, most likely.
+// Rejects empty names, which are most likely an unset shell variable.
 void RequireNames(CLI::App& app) {
   const auto is_empty = [](const std::string& name) {
     return name.empty() ? std::string("is empty") : std::string();

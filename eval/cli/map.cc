@@ -37,7 +37,8 @@ void Say(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) fmt::print("{}\n", line);
 }
 
-// A laser log brings its poses, which are level, and no images.
+// Rejects options that make no sense for a laser log, which contains its own planar poses and no
+// images.
 void RefuseForLaserLog(const MapArguments& arguments) {
   for (const std::string& file : {arguments.poses, arguments.final_poses}) {
     if (!file.empty()) throw InputError(file, "a laser log brings its own poses");
@@ -50,7 +51,7 @@ void RefuseForLaserLog(const MapArguments& arguments) {
   }
 }
 
-// SLAM's files, when there are any.
+// Reads SLAM's files, if any.
 std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceOptions& options) {
   const bool laser = FormatOf(arguments.input, options) == SequenceFormat::kCarmen;
   if (laser) RefuseForLaserLog(arguments);
@@ -72,15 +73,15 @@ std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceO
        options.recording.max_interpolation_gap_s});
 }
 
-// Where the program that rendered a folder says that its floor is.
+// The floor's height as written by the program that rendered the folder.
 std::optional<double> RenderedFloor(const std::string& render_file) {
-  std::error_code error;  // such as of a name that is too long
+  std::error_code error;  // such as: name too long
   if (!fs::is_regular_file(render_file, error)) return {};
   return ParseNumber(Config::FromFile(render_file).Text("mapper.scan.floor_z_m"));
 }
 
-// Where no floor was looked for, as up was given: that of a rendered folder. Poses of others may
-// count heights from elsewhere; the images tell.
+// If up was given and so no floor was searched: takes the floor of a rendered folder. Poses from
+// elsewhere may have another origin of heights, which the images show.
 void TakeRenderedFloor(const MapArguments& arguments, const Config& config, Sequence& sequence,
                        MapSettings& settings) {
   const std::string file = (fs::path(arguments.input) / "render.yaml").string();
@@ -100,7 +101,7 @@ Sequence OpenInput(const MapArguments& arguments, const Config& config, MapSetti
   const auto slam = ReadSlam(arguments, settings.sequence);
   Sequence sequence = OpenSequence(arguments.input, settings.sequence,
                                    slam ? std::optional(slam->slam) : std::nullopt);
-  // Poses alone are not known to be final ones.
+  // Without a file of final poses, none are known to be final.
   if (slam && arguments.final_poses.empty()) sequence.final_poses.clear();
   if (settings.mapper.fusion.mode == FusionMode::kOracle) {
     throw SettingError("mapper.fusion.mode",
@@ -141,7 +142,7 @@ void CheckPoses(const MapArguments& arguments, const Sequence& sequence,
   warnings.push_back(poses + ": " + PoseDoubtText(*doubt));
 }
 
-// The map of another axis than up is a cut through the walls, and looks like a map.
+// Warns of a wrong up axis: its map is a vertical section of the room, but looks like a map.
 void CheckUp(const Config& config, const Sequence& sequence, std::vector<std::string>& warnings) {
   if (!sequence.up_doubt) return;
   const char* upside_down = "; if the camera is mounted upside down, that is the ceiling";
@@ -150,7 +151,7 @@ void CheckUp(const Config& config, const Sequence& sequence, std::vector<std::st
                                  sequence.up_doubt->opposite ? upside_down : ""));
 }
 
-// Poses whose world has its floor elsewhere than at 0, as a surveyor's has.
+// Warns of poses in a world whose floor is not at height 0.
 void CheckFloor(const MapArguments& arguments, const Sequence& sequence, const ScanOptions& scan,
                 const MappingRun& run, std::vector<std::string>& warnings) {
   const auto& seen_z_m = sequence.seen_floor_z_m;
@@ -162,12 +163,12 @@ void CheckFloor(const MapArguments& arguments, const Sequence& sequence, const S
                   scan.floor_z_m, *seen_z_m));
 }
 
-// Only one of the two can be right; which one, the mapper cannot know.
+// Warns of different scales of poses and map; which is wrong cannot be determined.
 void CheckScale(const MapArguments& arguments, const MappingRun& run,
                 std::vector<std::string>& warnings) {
   const auto ways = ScaleDoubt(run);
   if (!ways) return;
-  constexpr double kStandingM = 1e-3;  // of rounding
+  constexpr double kStandingM = 1e-3;  // allows for rounding
   if (ways->slam_m < kStandingM) {
     warnings.push_back(fmt::format("{}: the given poses do not move, but the map's go {:.1f} m",
                                    arguments.input, ways->map_m));
@@ -181,7 +182,7 @@ void CheckScale(const MapArguments& arguments, const MappingRun& run,
       arguments.input, ways->slam_m, ways->map_m, fault));
 }
 
-// `found`: from where the laser is said to be to where it is.
+// `found`: the actual laser pose relative to the stated one.
 std::string MountText(const LaserMount& stated, const Pose2& found) {
   const Pose2 mount = stated.base_from_laser() * found;
   const auto side = [](double value, const char* left, const char* right) {
@@ -199,7 +200,7 @@ std::string MountText(const LaserMount& stated, const Pose2& found) {
       Number(mount.x_m, 2), Number(mount.y_m, 2), Number(DegFromRad(mount.yaw_rad), 0));
 }
 
-// Of laser logs: what the matches say of the odometry's directions, or these of the scans.
+// For laser logs: warns of disagreeing directions of odometry and scans.
 void CheckDirections(const MapArguments& arguments, const CarmenLogOptions& laser,
                      const MappingRun& run, std::vector<std::string>& warnings) {
   if (run.camera) return;
@@ -231,7 +232,7 @@ void CheckDirections(const MapArguments& arguments, const CarmenLogOptions& lase
   warnings.push_back(arguments.input + ": " + what);
 }
 
-// A map of poses that nothing checked looks like any other.
+// Warns of poses that were not checked by matches, because their map looks like any other.
 void CheckMatches(const MapArguments& arguments, const MapSettings& settings, const MappingRun& run,
                   std::vector<std::string>& warnings) {
   if (const auto doubt = DoubtOfView(run, settings.mapper)) {
@@ -276,7 +277,7 @@ void SayResult(const MappingRun& run, bool localised) {
   if (const auto lost = static_cast<int>(run.reports.size()) - posed; lost > 0) {
     fmt::print(", {} without a pose", lost);
   }
-  // The others that entered the graph are the mapper's own.
+  // Other loops in the graph are the mapper's own.
   const auto is_given = [&](const PlanarLoop& loop) {
     const auto frame = [&](int i) { return mapped[static_cast<std::size_t>(i)].frame; };
     return std::any_of(run.loops.begin(), run.loops.end(), [&](const LoopClosure& given) {
@@ -292,7 +293,7 @@ void SayResult(const MappingRun& run, bool localised) {
   fmt::print("\n");
 }
 
-// What may be wrong with what was mapped; `begin`: in a finished map, where.
+// Warnings about the run; `begin`: its start in a finished map, if any.
 std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest& request,
                                      const Sequence& input, const std::optional<MapStart>& begin,
                                      const MappingRun& run) {
@@ -304,7 +305,7 @@ std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest
   CheckFloor(arguments, input, settings.mapper.scan, run, warnings);
   const std::vector<std::string> doubts = DoubtsOfSettings(given, request);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
-  // Poses read the wrong way have another scale too.
+  // Misread poses differ in scale as well.
   if (!input.pose_doubt) CheckScale(arguments, run, warnings);
   CheckDirections(arguments, settings.sequence.laser, run, warnings);
   CheckMatches(arguments, settings, run, warnings);
@@ -316,7 +317,7 @@ std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest
   return warnings;
 }
 
-// All but the time that it took.
+// The run's record, without run times.
 RunRecord RecordOf(const MapRequest& request, const MappingRun& run, const std::string& map_hash,
                    const std::vector<std::string>& warnings) {
   MapSettings settings = request.settings;
@@ -364,7 +365,7 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   WriteRunFolder(folder, record);
   if (arguments.localise) {
     KeepMap(arguments.map, folder);
-    // The page is of the map that is kept, which somebody may have drawn in since it was made.
+    // The page shows the map that is kept, which may have been edited since it was made.
     WriteRunReport(folder.work().string(), {folder.work().string()});
   }
   folder.Commit();

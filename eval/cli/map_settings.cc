@@ -15,7 +15,7 @@
 namespace depthgrid::cli {
 namespace {
 
-// The settings of a map's run.yaml, given in place of an input: that map is made again.
+// The settings of a map's run.yaml, which is given as input to repeat that run.
 Config SettingsOf(const std::string& run_yaml) {
   Config config = Config::FromFile(run_yaml);
   if (config.Has("scene")) throw InputError(run_yaml, "is an experiment; `depthgrid run` takes it");
@@ -42,8 +42,8 @@ Config ConfigOf(const MapArguments& arguments, const std::vector<std::string>& o
   return config;
 }
 
-// A map's run.yaml has keys for what the command line has options for: beside any other input they
-// would be settings that nothing reads.
+// Rejects overrides of keys that run.yaml has for command-line options: with any other input they
+// would have no effect.
 void RequireOptionsFor(const std::vector<std::string>& overrides) {
   struct Named {
     const char* key;
@@ -63,7 +63,7 @@ void RequireOptionsFor(const std::vector<std::string>& overrides) {
   }
 }
 
-// What another command takes, or what one wrote.
+// Rejects inputs or outputs of other commands.
 void RefuseOtherInputs(const std::string& input, SequenceFormat format) {
   namespace fs = std::filesystem;
   const std::string shipped = ShippedFolder(ShippedKind::kExperiment);
@@ -82,7 +82,7 @@ void RefuseOtherInputs(const std::string& input, SequenceFormat format) {
   }
 }
 
-// With the files of the run.yaml that the command line does not name anew.
+// Adds the files of the run.yaml where the command line names none.
 MapArguments WithFilesOf(const MapSettings& settings, MapArguments arguments) {
   if (!IsSettingsFile(arguments.input)) return arguments;
   arguments.input = settings.input;
@@ -94,7 +94,7 @@ MapArguments WithFilesOf(const MapSettings& settings, MapArguments arguments) {
   return arguments;
 }
 
-// What only a finished map can mean.
+// Rejects options that need a finished map if there is none.
 void RequireMapFor(const MapRequest& request) {
   const MapArguments& arguments = request.arguments;
   const auto refuse = [&](const char* key, const std::string& what) {
@@ -114,7 +114,7 @@ void RequireMapFor(const MapRequest& request) {
   }
 }
 
-// It would be of no use: that map stays as it is.
+// It would have no effect: that map is not redrawn.
 void RefuseMapMode(const MapArguments& arguments) {
   if (!arguments.localise || arguments.output.map_mode == MapMode::kTrinary) return;
   const char* mode = arguments.output.map_mode == MapMode::kScale ? "scale" : "raw";
@@ -140,7 +140,7 @@ std::optional<Pose2> PlaceOf(const std::string& text) {
 std::string FromEverywhere(const std::string& path) {
   namespace fs = std::filesystem;
   if (path.empty()) return path;
-  std::error_code error;  // of a pipe, say, which has no path; whoever reads it says so
+  std::error_code error;  // such as for a pipe, which has no path; reported when it is read
   const fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
   return (error ? fs::absolute(path) : resolved).string();
 }

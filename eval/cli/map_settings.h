@@ -1,5 +1,4 @@
-// What `depthgrid map` maps and how: its options and settings, or a map's run.yaml in place of an
-// input, which makes that map again.
+// Options and settings of `depthgrid map`. A run.yaml of a map as input repeats that run.
 #pragma once
 
 #include <optional>
@@ -31,28 +30,28 @@ struct MapSettings {
 };
 
 struct MapRequest {
-  MapArguments arguments;  // with the files of a run.yaml that the command line does not name anew
+  MapArguments arguments;  // with files from a run.yaml where the command line names none
   Config config;
-  // Files by absolute paths, so that run.yaml means the same from everywhere; sequence.camera as it
-  // is given until it was read, for messages.
+  // With absolute paths, so that run.yaml is valid from any folder; except sequence.camera, which
+  // is as given until it has been read, for messages.
   MapSettings settings;
-  // Where in the finished map the base is at first, where that is known.
+  // The base's initial pose in the finished map, if given.
   std::optional<Pose2> start;
   Config provenance;  // of a run.yaml
 };
 MapRequest ReadMapRequest(const MapArguments& given);
 
-// "1.5,-2,90" is 1.5 m, -2 m and 90 degrees; nothing for what is not three finite numbers.
+// "1.5,-2,90" is 1.5 m, -2 m and 90 degrees; empty unless three finite numbers.
 constexpr const char* kPlaceRule = "must be three finite numbers: X,Y,YAW_DEG";
 std::optional<Pose2> PlaceOf(const std::string& text);
 
-// A file's absolute path; none stays none.
+// A file's absolute path; empty if `path` is.
 std::string FromEverywhere(const std::string& path);
 
-// The files and folders that it is read from, as they are named.
+// The files and folders that the request reads, as named.
 std::vector<std::string> InputsOf(const MapArguments& given, const MapRequest& request);
 
-// What was set beside what makes it mean nothing.
+// Warnings about settings that others make meaningless.
 std::vector<std::string> DoubtsOfSettings(const MapArguments& given, const MapRequest& request);
 
 }  // namespace depthgrid::cli

@@ -15,13 +15,13 @@ std::string PitchOf(const PoseDoubt& doubt) {
                      doubt.down_rad > 0.0 ? "below" : "above");
 }
 
-// Three digits, which is how well it is known: 0.664, 1000.
+// Three significant digits, its accuracy: 0.664, 1000.
 std::string ShownScale(double scale) {
   const double unit = std::pow(10.0, std::floor(std::log10(scale)) - 2.0);
   return fmt::format("{:g}", std::round(scale / unit) * unit);
 }
 
-// "-y x z": of which numbers of a row the three axes come.
+// "-y x z": which numbers of a row give the three axes.
 std::string PositionsOf(const Eigen::Matrix3d& axes) {
   std::string text;
   for (int row = 0; row < 3; ++row) {
@@ -46,7 +46,8 @@ std::string AxesOf(const Eigen::Matrix3d& camera_from_own) {
   return text;
 }
 
-// A slow camera moves a centimetre in it.
+// Smaller uncertainties of the time offset are not mentioned: a slow camera moves a centimetre in
+// it.
 constexpr double kSureOfTimeS = 0.04;
 
 std::string OffsetRemedyOf(const PoseDoubt& doubt) {

@@ -1,4 +1,4 @@
-// What a user is told of poses that do not fit their images.
+// The message for poses that do not fit their images.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace depthgrid::cli {
 
-// How badly they fit, with what they would fit, and what is to be done about it: the poses are
-// mapped as they were read.
+// States how badly they fit, which correction would fit, and how to apply it. The poses are used as
+// read.
 std::string PoseDoubtText(const PoseDoubt& doubt);
 
 }  // namespace depthgrid::cli

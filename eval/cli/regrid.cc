@@ -17,14 +17,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The grid settings a run used; all else of run.yaml does not matter here.
+// The grid settings of a run.
 GridOptions GridOptionsOf(const std::string& run_yaml) {
   GridOptions options;
   Config::FromFile(run_yaml).Take("mapper").Take("grid").Read(options);
   return options;
 }
 
-// --resolution with the range of the key it stands for.
+// --resolution as the key that it sets, so that the key's range is checked.
 Config ResolutionOf(const RegridArguments& arguments) {
   Config config;
   config.Set("resolution_m", arguments.resolution, "--resolution " + arguments.resolution);
@@ -33,7 +33,7 @@ Config ResolutionOf(const RegridArguments& arguments) {
   return config;
 }
 
-// The image beside a map that WriteMap wrote; nothing when there is none.
+// The image that WriteMap wrote with a map; empty if there is none.
 std::string ImageOfMap(const fs::path& yaml) {
   if (!fs::exists(yaml)) return "";
   const std::string text = ReadFile(yaml.string());
@@ -54,7 +54,7 @@ void Regrid(const RegridArguments& arguments) {
   GridOptions options = GridOptionsOf((folder / "run.yaml").string());
   resolution.Read(options);
   const fs::path map = folder / fmt::format("map_{}.yaml", options.resolution_m);
-  // Its name is that of its resolution.
+  // The file's name contains the resolution.
   constexpr const char* kRemedy = "move it away, or --force to replace it";
   RequireNewFile(map.string(), arguments.force, kRemedy);
   RequireNewFile(MapImageOf(map.string(), arguments.map_mode), arguments.force, kRemedy);
@@ -66,7 +66,7 @@ void Regrid(const RegridArguments& arguments) {
   }
   const std::string replaced = ImageOfMap(map.string());
   WriteMap(map.string(), drawing.Map(), arguments.map_mode);
-  // The same map in another mode has an image of another name.
+  // In another map mode the image has another name.
   if (!replaced.empty() && replaced != ImageOfMap(map.string())) fs::remove(folder / replaced);
   fmt::print("{}\n", map.string());
 }

@@ -22,13 +22,13 @@
 namespace depthgrid::cli {
 namespace {
 
-// A frame that is in the folder.
+// A frame that has been written.
 struct Written {
-  bool shows = false;  // a depth somewhere
+  bool shows = false;  // has a depth anywhere
 };
 
-// Images of one frame to the folder. A colour camera has a thread's context, so each thread makes
-// its own.
+// Writes the images of one frame. A colour camera's context belongs to a thread, so each thread
+// makes its own.
 Written WriteFrame(const World& world, const SyntheticSensor& sensor, const TumFolderWriter& writer,
                    bool with_colour, int frame) {
   const StampedPose& pose = world.trajectory[static_cast<std::size_t>(frame)];
@@ -66,7 +66,7 @@ void RenderNamed(const RenderArguments& arguments) {
   Warn(DoubtsOfImages(arguments.scene, arguments.common.set));
   Warn(world.path_doubts);
   const ExperimentOptions options = Completed(given, world.scene);
-  // Whatever it refuses, now and not at the end.
+  // Made first, so that its errors come now and not at the end.
   const TruthRecord truth = MakeTruth(world, options.mapper, threads);
   if (const auto doubt = DoubtOfTruth(world, truth, options)) Warn({*doubt});
   const SyntheticSensor sensor(world, options, cache_folder);

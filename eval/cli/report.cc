@@ -34,10 +34,10 @@ void WriteReport(const std::string& folder, const ReportPlace& place) {
   }
 }
 
-// So ends every page's title (eval/web).
+// The end of every page's title (eval/web).
 constexpr std::string_view kEndOfTitle = " - depthgrid</title>";
 
-// Only a page is replaced by a page: what else is called report.html may be somebody's only copy.
+// Only a report page may be overwritten; any other report.html may be the user's only copy.
 void RequireNoneButAPage(const std::string& path) {
   if (!fs::exists(path)) return;
   if (ReadFile(path).find(kEndOfTitle) == std::string::npos) {
@@ -46,7 +46,7 @@ void RequireNoneButAPage(const std::string& path) {
   }
 }
 
-// What comes with a page replaces nothing but what came with the one there.
+// The page's other files may overwrite only those of an earlier page.
 void RequireNoneButItsFiles(const std::string& folder, const fs::path& written) {
   const std::string page = folder + "/report.html";
   const std::string text = fs::exists(page) ? ReadFile(page) : "";
@@ -60,7 +60,7 @@ void RequireNoneButItsFiles(const std::string& folder, const fs::path& written) 
   }
 }
 
-// A link would be replaced itself, by a file.
+// Rejects links, which would themselves be replaced by files.
 void RequireNoLinks(const std::string& folder) {
   const FileRule is_of_page = FilesOf(ResultKind::kPage);
   std::error_code missing;

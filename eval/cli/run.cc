@@ -29,7 +29,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A run in which SLAM is lost has scores of what is left.
+// If SLAM was lost, the scores cover only the remaining frames.
 void PrintLost(const MappingRun& run) {
   const auto lost = std::count_if(run.reports.begin(), run.reports.end(),
                                   [](const auto& report) { return !report.slam_from_camera; });
@@ -71,7 +71,7 @@ std::optional<double> WallF1(const MapScore& score) {
   return cells.occupied[kDefaultToleranceCells].f1;
 }
 
-// What the command line changed: published figures are of the study as it is written.
+// Notes overrides: published figures are for the study as its file defines it.
 void PrintOverrides(const Study& study) {
   const bool published = std::ranges::any_of(
       study.outline.cases, [](const StudyCase& one) { return one.published_mean_m.has_value(); });

@@ -24,9 +24,9 @@ namespace {
 struct ScenePath {
   std::string name;
   TrajectoryOptions options;
-  Trajectory poses;     // empty: it cannot be made
-  std::string refusal;  // empty: it can be taken
-  std::string meeting;  // why not with all movers; empty: it can
+  Trajectory poses;     // empty if the path is invalid
+  std::string refusal;  // why the path cannot be used; else empty
+  std::string meeting;  // why it cannot be used with all movers; else empty
   std::string doubt;    // empty: none
 };
 
@@ -84,7 +84,7 @@ std::string PathTable(const std::vector<ScenePath>& paths) {
   return Table(rows);
 }
 
-// Once along its waypoints, sampled like a camera path.
+// One round along its waypoints, sampled like a camera path.
 Trajectory RoundOf(const Mover& mover) {
   const MoverPath path(mover.options);
   const int frames = static_cast<int>(std::ceil(path.RoundS() * kFrameRateHz));
@@ -117,7 +117,8 @@ std::string MoverTable(const std::vector<Mover>& movers) {
 }
 
 void WritePlan(const std::string& file, const Scene& scene, const std::vector<ScenePath>& paths) {
-  // Those of a second round are dashed, of a third with a dot behind each dash, and so on.
+  // When the colours are used up they repeat with dashed lines, then with dash-dotted ones, and so
+  // on.
   constexpr std::array kColours = {palette::kEstimate, palette::kSlam, palette::kTruth,
                                    palette::kMissed, palette::kInvented};
   std::vector<Path> drawn;
@@ -135,7 +136,7 @@ void WritePlan(const std::string& file, const Scene& scene, const std::vector<Sc
   WriteRgbPng(file, PlanOf(scene, drawn));
 }
 
-// No scene, nor what it includes or takes its meshes from, is called so: none is overwritten.
+// Only .png files are written, so that no scene, include or mesh is overwritten.
 void RequirePlanFile(const std::string& file, bool force) {
   if (!file.ends_with(".png")) throw InputError(file, "must end in .png");
   RequireNewFile(file, force);
@@ -147,7 +148,7 @@ void RefuseSweep(const std::string& path) {
   throw InputError(path, "is a sweep, must be a scene or mesh file");
 }
 
-// At the end, when all there is to see is said and drawn: for scripts.
+// Fails for scripts, at the end, when everything has been printed and drawn.
 void RequireNoneRefused(const std::string& scene, const std::vector<ScenePath>& paths) {
   std::vector<std::string> refused;
   for (const ScenePath& path : paths) {

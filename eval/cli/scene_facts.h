@@ -1,12 +1,12 @@
-// `depthgrid scenes SCENE`: what there is to know before an experiment names it.
+// `depthgrid scenes SCENE`: facts about a scene for writing experiments.
 #pragma once
 
 #include "eval/cli/commands.h"
 
 namespace depthgrid::cli {
 
-// Size, floor, ceiling, paths and movers of one scene, with what is wrong with a path; its plan if
-// asked.
+// Prints size, floor, ceiling, paths and movers of one scene, and problems of paths; draws its plan
+// if requested.
 void ShowScene(const ScenesArguments& arguments);
 
 }  // namespace depthgrid::cli

@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 // Mesa's src/util/disk_cache_os.c, 22.3: a 64-bit size and 2^16 keys of 20 bytes.
 constexpr off_t kIndexBytes = 8 + (off_t{1} << 16) * 20;
 
-// Mesa maps the index of its cache into memory as a file with holes: where the disk is full when
-// one is written to, the program dies of SIGBUS. So its whole room is taken beforehand. Whether it
-// is.
+// Mesa maps its cache's index into memory as a sparse file; if the disk is full when a hole is
+// written, the program dies of SIGBUS. So this allocates the whole file beforehand; returns whether
+// it succeeded.
 bool TakeRoomForIndex(const fs::path& cache_folder) {
   const fs::path folder = cache_folder / "mesa_shader_cache";
   std::error_code error;

@@ -1,13 +1,13 @@
-// Where Mesa keeps the shaders that it compiled.
+// The location of Mesa's shader cache.
 #pragma once
 
 #include "eval/cli/commands.h"
 
 namespace depthgrid::cli {
 
-// Mesa keeps compiled shaders, in the user's home unless it is told where: in the cache folder, and
-// not at all without one, or where its disk has no room for them. What the user told Mesa stands.
-// Before anything is drawn in colour, and before other threads begin.
+// By default Mesa caches compiled shaders in the user's home. This puts them into the cache folder,
+// or disables the cache if there is none or its disk is full. The user's own settings for Mesa are
+// respected. Call it before any colour rendering and before other threads start.
 void KeepShadersInCache(const CommonArguments& arguments);
 
 }  // namespace depthgrid::cli

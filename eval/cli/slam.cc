@@ -52,7 +52,8 @@ void SayNext(const SlamArguments& arguments, const SlamOutput& slam) {
                                    [](const SlamPose& pose) { return pose.slam_from_camera; });
   fmt::print("SLAM gives {} of {} a pose and closes {}: {}/slam.txt\n", posed,
              Counted(slam.live.size(), "frame"), Counted(slam.loops.size(), "loop"), output);
-  // Its world has z up, as `run` takes it; found from images it would be that of drifting poses.
+  // The world has z up, as in `run`. Estimated from the images it would be affected by the poses'
+  // drift.
   fmt::print("go on with: depthgrid map {} --poses {} --loops {} --up z -o OUT\n",
              ShellWord(arguments.sequence), ShellWord(output + "/slam.txt"),
              ShellWord(output + "/loops.csv"));
@@ -64,7 +65,7 @@ void Slam(const SlamArguments& arguments) {
   Config config;
   config.Set("slam.profile", arguments.profile, "--profile " + arguments.profile);
   for (const std::string& assignment : arguments.common.set) config.Set(assignment);
-  // As experiments have it.
+  // Seed keys of experiments.
   for (const char* key : {"slam_seed", "seed"}) {
     if (config.Has(key)) throw InputError(config.PlaceOfKey(key), "give --seed N");
   }

@@ -42,7 +42,7 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
   return run;
 }
 
-// A file given twice, for one.
+// Warns of equal poses, as when a file is given twice.
 void WarnOfSamePoses(const SlamRun& run, const std::string& truth_path,
                      const std::string& estimate_path) {
   const auto same = [](const StampedPose& a, const StampedPose& b) {
@@ -53,7 +53,7 @@ void WarnOfSamePoses(const SlamRun& run, const std::string& truth_path,
                     truth_path)});
 }
 
-// What the fitted surrogate, less its loops, makes of the same true paths, over several seeds.
+// The fitted surrogate, without loops, run on the same true paths with several seeds.
 std::vector<SlamRun> Imitated(const std::vector<SlamRun>& runs, SlamOptions options) {
   options.loops = WithScenario(options.loops, LoopScenario::kNone);
   std::vector<SlamRun> imitated;
@@ -82,8 +82,8 @@ void PrintComments(const std::string& text) {
   }
 }
 
-// What was fitted: a correction takes away at once what errors have added up, by the surrogate's
-// loops as by the system's own, and hides how they grow.
+// The stretches used for fitting: a correction removes accumulated errors at once, and so hides how
+// they grow.
 std::vector<SlamRun> AllBetweenCorrections(const std::vector<SlamRun>& runs) {
   std::vector<SlamRun> all;
   for (const SlamRun& run : runs) {

@@ -49,8 +49,8 @@ Shard ShardOf(const std::string& text) {
   return shard;
 }
 
-// The folder of a sweep, which nobody else works in. One made for it is taken away again when
-// nothing could be started in it: neither runs here nor jobs of Slurm, which go on by themselves.
+// The locked folder of a sweep. If it was created here, it is removed again when neither runs here
+// nor jobs of Slurm (which continue by themselves) could be started.
 class SweepFolder {
  public:
   SweepFolder(const std::string& path, bool force) : path_(path) {
@@ -65,18 +65,18 @@ class SweepFolder {
     std::error_code error;
     const bool created = fs::create_directories(path, error);
     if (error) throw InputError(path, "cannot be created: " + error.message());
-    // Whoever has the lock, although this program made the folder: it is no longer its own.
+    // If another program has the lock, the folder is its own, even if it was created here.
     lock_.emplace(path);
     created_ = created;
   }
   SweepFolder(const SweepFolder&) = delete;
   SweepFolder& operator=(const SweepFolder&) = delete;
 
-  // Whether nobody has removed it meanwhile.
+  // False if someone has removed it meanwhile.
   bool IsThere() const { return fs::exists(path_ + "/.lock"); }
 
  private:
-  // One killed before its plan was written has a lock and no more.
+  // A sweep killed before its plan was written has only the lock.
   bool IsSweep() const { return SweepDatabase::Exists(path_) || IsThere(); }
 
   std::string path_;
@@ -137,7 +137,7 @@ void Summarise(const SweepResults& results) {
   Warn({message});
 }
 
-// What it joins is there already, with all its settings.
+// --merge takes no other options, because the parts have all settings.
 void RequireMergeAlone(const SweepArguments& arguments) {
   if (!arguments.sweep.empty()) {
     throw InputError("--merge", "takes the sweep from the parts, '" + arguments.sweep +
@@ -163,7 +163,8 @@ void Merge(const SweepArguments& arguments) {
   Summarise(results);
 }
 
-// What is known so far is worth a table. Read anew, for a thread of its own may do it.
+// Writes a table of the results so far. Reopens the database because it may run in a thread of its
+// own.
 void TabulateKnown(const std::string& folder) {
   try {
     const SweepDatabase database = SweepDatabase::Open(folder);
@@ -171,7 +172,7 @@ void TabulateKnown(const std::string& folder) {
     const std::size_t planned = database.PlannedRuns().size();
     fmt::print(stderr, "depthgrid: {} of {} done, in {}/results.csv; the same command goes on\n",
                planned - database.UnfinishedRuns().size(), Counted(planned, "run"), folder);
-  } catch (const std::exception&) {  // the next start writes it
+  } catch (const std::exception&) {  // written at the next start
   }
 }
 
@@ -181,7 +182,7 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
   const std::string& output = arguments.common.output;
   SweepDatabase database =
       OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force);
-  // With `stop` more seeds, or fewer, were done because of them.
+  // With `stop`, their results also affected the number of seeds.
   const int failed = plan.stop.Enabled() ? 0 : database.PlanFailedAgain();
   NoteWork(database, context.threads);
   if (const auto doubt = DoubtOfBuilds(output, database.Environment())) Warn({*doubt});
@@ -205,10 +206,11 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
   return database.Results();
 }
 
-// In its folder, which is there and locked.
+// Runs the sweep in its folder, which exists and is locked.
 void SweepIn(const std::string& output, const SweepArguments& arguments, const SweepPlan& plan,
              SweepContext context) {
-  // Rendered depth and scans outlive a kill beside the results when nobody named another place.
+  // By default rendered depth and scans are cached in the sweep's folder, so that they survive a
+  // kill.
   const bool own_cache = context.cache_folder.empty() && !arguments.common.no_cache;
   if (own_cache) context.cache_folder = output + "/cache";
   const SweepResults results = DoUnfinishedRuns(arguments, plan, context);
@@ -219,7 +221,7 @@ void SweepIn(const std::string& output, const SweepArguments& arguments, const S
 
 void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   const std::string& output = arguments.common.output;
-  ShardOf(arguments.shard);  // refused before there is a folder
+  ShardOf(arguments.shard);  // checked before the folder is created
   const SweepFolder folder(output, arguments.common.force);
   SweepContext context;
   context.threads = ThreadsOr(arguments.jobs);
@@ -227,13 +229,13 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   try {
     SweepIn(output, arguments, plan, context);
   } catch (const std::exception&) {
-    // Whatever came of that, it is no mistake in what the user gave.
+    // If the folder was removed meanwhile, errors are not the user's mistake.
     if (folder.IsThere()) throw;
     throw std::runtime_error(output + ": was removed while the sweep was at work in it");
   }
 }
 
-// The command of one part; the shell of its task knows which.
+// The command of one part, whose number the task's shell inserts.
 std::string PartCommand(const SweepArguments& arguments, const std::string& sweep_file,
                         const std::string& folder, int parts) {
   const auto absolute = [](const std::string& path) {
@@ -253,7 +255,7 @@ std::string PartCommand(const SweepArguments& arguments, const std::string& swee
 
 constexpr int kMostParts = 1000;  // Slurm's default MaxArraySize is 1001
 
-// As many parts as have work for long enough: an empty task costs Slurm about a second.
+// As many parts as have enough work each: an empty task costs Slurm about a second.
 int PartsFor(const SweepArguments& arguments, const SweepPlan& plan, double cpu_s) {
   constexpr double kLeastTaskS = 30.0;
   const std::vector<int> groups = ScanGroups(plan);
@@ -266,7 +268,7 @@ int PartsFor(const SweepArguments& arguments, const SweepPlan& plan, double cpu_
   return std::clamp(wanted, 1, std::min(units, kMostParts));
 }
 
-// The number of parts stays what it was when the sweep was started first.
+// The number of parts remains that of the sweep's first start.
 int PartsIn(const std::string& folder, const std::function<int()>& otherwise) {
   const std::string path = folder + "/shards/parts.txt";
   if (fs::exists(path)) {
@@ -314,7 +316,7 @@ void SweepOnSlurm(const SweepArguments& arguments, const SweepPlan& plan,
     MergeSweeps(parts, output);
   }
   bar.Clear();
-  // Says so if it is another sweep.
+  // Throws if it is another sweep.
   Summarise(OpenOrCreateSweep(output, plan, {}, false).Results());
 }
 

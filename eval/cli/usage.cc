@@ -18,7 +18,7 @@
 namespace depthgrid::cli {
 namespace {
 
-// The command that the words reached, and its name as typed: "depthgrid eval map".
+// The innermost command given, and its full name: "depthgrid eval map".
 const CLI::App& Reached(const CLI::App& app, std::string& name) {
   name += app.get_name();
   const std::vector<CLI::App*> next = app.get_subcommands();
@@ -33,7 +33,7 @@ std::vector<std::string> Commands(const CLI::App& app) {
   return names;
 }
 
-// Without their dashes, which are no likeness.
+// Without their dashes, which would count as similarity.
 std::vector<std::string> LongOptions(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options()) {
@@ -46,7 +46,8 @@ std::string WithoutDashes(const std::string& option) {
   return option.substr(std::min(option.find_first_not_of('-'), option.size()));
 }
 
-// The keys that --set of a command takes; none where it takes other ones than these two kinds.
+// The keys that --set of a command accepts; empty for commands with other keys than these two
+// kinds.
 std::vector<std::string> KeysOf(const CLI::App& app) {
   const bool has_set = app.get_option_no_throw("--set") != nullptr;
   if (!has_set || app.get_name() == "slam") return {};
@@ -56,7 +57,7 @@ std::vector<std::string> KeysOf(const CLI::App& app) {
   return keys;
 }
 
-// The key that an option would be: its whole path, or the end of no other's.
+// The key that an option probably means: one with this full path, or the only one with this ending.
 std::string KeyMeant(const CLI::App& app, const std::string& option) {
   const std::string word = WithoutDashes(option);
   const std::vector<std::string> keys = KeysOf(app);
@@ -66,7 +67,7 @@ std::string KeyMeant(const CLI::App& app, const std::string& option) {
   return *std::find_if(keys.begin(), keys.end(), ends_so);
 }
 
-// `words`: what was not understood, from its first on; behind "--" none is an option.
+// `words`: the remaining words from the first unknown one on; after "--" none is an option.
 std::string UnknownWord(const CLI::App& app, const std::vector<std::string>& words) {
   const bool ended = words.front() == "--" && words.size() > 1;
   const std::string& word = words[ended ? 1 : 0];
@@ -128,7 +129,7 @@ std::string RefusalUnlessPlace(const std::string& text) {
 std::string RefusalUnlessSeed(const std::string& text) {
   std::uint64_t value = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  // The option itself would read 010 as 8.
+  // CLI11 would read 010 as 8.
   if (error == std::errc() && *stop == '\0' && !HasLeadingZero(text)) return "";
   return fmt::format("is '{}', must be a whole number from 0 to {}", text, UINT64_MAX);
 }

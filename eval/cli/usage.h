@@ -1,4 +1,4 @@
-// What is wrong with a command line, in words that name the word at fault.
+// Error messages for wrong command lines.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,8 +6,8 @@
 
 namespace depthgrid::cli {
 
-// One line without the program's name: a command or option that is not known with the nearest that
-// is, or what CLI11 says.
+// One line without the program's name: an unknown command or option with the nearest known one, or
+// CLI11's message.
 std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error);
 
 // For check(): CLI11's own PositiveNumber and NonNegativeNumber print the largest double in full.
@@ -18,7 +18,7 @@ std::string RefusalIfNegative(const std::string& text);
 // For check(): a place in a map, "X,Y,YAW_DEG".
 std::string RefusalUnlessPlace(const std::string& text);
 
-// For check(): CLI11 reads -3 as 2^64 - 3 and takes what is too large for the largest number.
+// For check(): CLI11 reads -3 as 2^64 - 3, and numbers that are too large as the largest one.
 std::string RefusalUnlessSeed(const std::string& text);
 
 }  // namespace depthgrid::cli

@@ -19,9 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Neither the output folder nor one that is made around it.
+// Rejects a video path that is the output folder or a parent of it that is yet to be created.
 void RequireNoFolderThere(const std::string& video, const std::string& output) {
-  std::error_code error;  // whoever makes the folder says so
+  std::error_code error;  // errors are reported when the folder is created
   const fs::path folder = fs::weakly_canonical(fs::absolute(output), error);
   const fs::path file = fs::weakly_canonical(fs::absolute(video), error);
   if (error ||

@@ -10,12 +10,12 @@
 
 namespace depthgrid::cli {
 
-// That the video can be written, and is none of the command's inputs, before the work.
+// Checks, before the work, that the video can be written and is not one of the command's inputs.
 void RequireVideoFile(const OutputArguments& output, const CommonArguments& common,
                       const std::vector<std::string>& inputs);
 
-// Writes the video, if one is wanted, of a map whose folder is in place already: hours of mapping
-// are not lost to an ffmpeg that fails. Throws std::runtime_error, which says where the map is.
+// Writes the video, if requested, after the map's folder is complete, so that a failure of ffmpeg
+// does not lose hours of mapping. Throws std::runtime_error, which says where the map is.
 void WriteVideo(const OutputArguments& output, const CommonArguments& common, const MappingRun& run,
                 const GridOptions& grid);
 
