@@ -28,7 +28,7 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
   } else if (asked.empty()) {
     names.assign(ScoresToCompare().begin(), ScoresToCompare().end());
   } else {
-    for (const std::string& name : asked) {  // one asked for twice is one test
+    for (const std::string& name : asked) {  // a metric given twice is one test
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
     return names;
@@ -37,12 +37,12 @@ std::vector<std::string> MetricsToCompare(const SweepResults& a, const SweepResu
   return names;
 }
 
-// One figure a unit, of the pairs in which both sides are defined; distances from the target of a
-// score that has one.
+// One value per unit, from the pairs in which both sides are defined; for scores with a target,
+// distances from it.
 struct UnitFigures {
   std::vector<double> a;
   std::vector<double> b;
-  int undefined_pairs = 0;  // of runs, on one side or the other
+  int undefined_pairs = 0;  // pairs of runs, undefined on one side or the other
 };
 
 UnitFigures FiguresOf(const SweepResults& a, const SweepResults& b, const std::string& name,
@@ -83,7 +83,8 @@ std::optional<MetricComparison> CompareMetric(const SweepResults& a, const Sweep
   return result;
 }
 
-// `least_p_holm`: the row's p-value if in every row all differences had one sign.
+// `least_p_holm`: the smallest possible adjusted p-value, with all differences of one sign in every
+// row.
 Verdict VerdictOf(const MetricComparison& c, double least_p_holm, double level) {
   if (least_p_holm >= level) return Verdict::kTooFew;
   if (c.p_holm >= level) return Verdict::kNotToldApart;
@@ -106,10 +107,10 @@ int PairsToTellApart(int rows, double level) {
   return pairs;
 }
 
-// Which rows are tested: those asked for all are. Of the headlines, where so few pairs cannot tell
-// all of them apart, the first that they can: a choice made without a look at the signs of the
-// differences keeps the chance of a false alarm, and a verdict on one row says more than none on
-// thirteen. Rows that are equal in every pair cannot decide and would take the place of others.
+// Selects the tested rows. Scores asked for are all tested. Of the default scores, if the pairs are
+// too few to decide all, only as many of the first ones as they can decide: one verdict is better
+// than none on thirteen rows, and a choice independent of the differences' signs keeps the level.
+// Rows equal in every pair are skipped, because they cannot be decided.
 std::vector<std::size_t> RowsToTest(const Comparison& comparison, bool are_headlines) {
   const std::vector<MetricComparison>& rows = comparison.metrics;
   const auto most = static_cast<std::size_t>(comparison.most_rows);
@@ -132,7 +133,7 @@ void Judge(const std::vector<std::size_t>& tested, double level, Comparison& com
   const std::vector<double> adjusted = HolmAdjusted(p_values);
   const std::vector<double> least = HolmAdjusted(least_p_values);
   for (MetricComparison& row : comparison.metrics) {
-    const bool all_equal = row.paired.wilcoxon.pairs == 0;  // which no test would tell apart
+    const bool all_equal = row.paired.wilcoxon.pairs == 0;  // no test could decide it
     row.verdict = all_equal ? Verdict::kNotToldApart : Verdict::kNotTested;
   }
   for (std::size_t k = 0; k < tested.size(); ++k) {
@@ -142,8 +143,8 @@ void Judge(const std::vector<std::size_t>& tested, double level, Comparison& com
   }
 }
 
-// Of a table of that many rows: each is judged as the first of them is, whose p-value Holm takes
-// times all of them. What so many pairs did not show takes more.
+// For a table of `rows` rows, each judged like the first one, whose p-value Holm multiplies by
+// their number. More than the present units if the difference was not detected.
 std::optional<int> SeedsNeededIn(std::size_t rows, const MetricComparison& c, double level) {
   const PairedComparison& paired = c.paired;
   if (paired.mean_difference == 0.0 || paired.pairs < 2) return std::nullopt;
@@ -156,8 +157,8 @@ std::optional<int> SeedsNeededIn(std::size_t rows, const MetricComparison& c, do
   return needed;
 }
 
-// Of all scores there are, which ones make no row: they would only cost the others Holm's
-// correction (one that is equal in every pair has a p-value of 1 whatever the level; Tarone 1990).
+// Scores that get no row when all are compared, because they would only increase Holm's correction
+// for the others (a score that is equal in every pair has p = 1 at any level; Tarone 1990).
 bool IsLeftOut(const MetricComparison& compared, Comparison& comparison) {
   if (compared.better == Better::kNeither) {
     comparison.without_direction.push_back(compared.metric);
@@ -175,7 +176,7 @@ Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOp
   const RunPairs pairs = PairsOf(a, b, options, comparison);
   const bool of_all = options.metrics == std::vector<std::string>{"all"};
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
-    // One that was asked for by name is an error, which CompareMetric() tells.
+    // If it was asked for by name, CompareMetric() throws.
     const bool by_name = !options.metrics.empty() && !of_all;
     const bool is_everywhere = HasMetric(a, name) && HasMetric(b, name);
     auto compared =

@@ -16,7 +16,7 @@ namespace {
 
 using Key = std::vector<std::string>;
 
-// 0.5 and 0.50 are the same value; seeds that no double holds stay apart.
+// 0.5 and 0.50 are the same value; seeds too large for a double remain distinct.
 std::string ValueAt(const SweepParameter& parameter, std::size_t row) {
   return ShortestYaml(parameter.texts[row]);
 }
@@ -31,7 +31,7 @@ bool IsFixed(const std::vector<Condition>& where, const std::string& key) {
                      [&](const Condition& c) { return c.first == key; });
 }
 
-// Axes of both that no condition fixes.
+// Axes of both sides that no condition fixes.
 std::vector<std::string> SharedAxes(const SweepResults& a, const SweepResults& b,
                                     const CompareOptions& options) {
   std::vector<std::string> keys;
@@ -44,7 +44,7 @@ std::vector<std::string> SharedAxes(const SweepResults& a, const SweepResults& b
   return keys;
 }
 
-// The text that a sweep has of a value written as in its file: "[1, 1, 0]" of "[1,1,0]".
+// A value as a sweep stores it: "[1, 1, 0]" for "[1,1,0]".
 std::string AsOnAxis(const std::string& value) {
   if (!value.starts_with("[")) return ShortestYaml(value);
   Config config;
@@ -52,7 +52,7 @@ std::string AsOnAxis(const std::string& value) {
   return config.Entries().front().text;
 }
 
-// The first values, each once; how many more there are.
+// Lists the first distinct values, and the number of others.
 std::string SomeValues(const SweepParameter& parameter, const std::vector<std::size_t>& rows) {
   constexpr std::size_t kMost = 12;
   std::vector<std::string> values;
@@ -86,7 +86,7 @@ std::vector<std::size_t> RowsThatMeet(const SweepResults& table,
   return rows;
 }
 
-// The first axis beside the shared ones in which two rows differ, or "".
+// The first axis in which two rows differ, or "".
 std::string WhatDiffers(const SweepResults& table, std::size_t row, std::size_t other) {
   for (const SweepParameter& parameter : table.parameters) {
     if (ValueAt(parameter, row) != ValueAt(parameter, other)) return parameter.key;
@@ -94,7 +94,7 @@ std::string WhatDiffers(const SweepResults& table, std::size_t row, std::size_t 
   return "";
 }
 
-// The value that all of the rows have, or "".
+// The value common to all of the rows, or "".
 std::string OnlyValue(const SweepResults& table, const std::string& key,
                       const std::vector<std::size_t>& rows) {
   const SweepParameter& parameter = table.Parameter(key);
@@ -104,13 +104,13 @@ std::string OnlyValue(const SweepResults& table, const std::string& key,
   return is_only ? first : "";
 }
 
-// What is seen: runs that differ there make no pair.
+// Keys that determine what is seen: runs that differ in them cannot be a pair.
 bool MakesPairs(const std::string& key) {
   return IsSeedKey(key) || key == "scene" || key == "trajectory" || key == "frames";
 }
 
-// Takes the settings out of `keys` of which either side has one value, another than the other
-// side's, as keys that change together with one that a condition chooses.
+// Removes from `keys` the settings that have a single value on each side, but different ones, as do
+// keys that change together with one in a condition.
 std::vector<DifferentSetting> TakeDifferent(const SweepResults& a,
                                             const std::vector<std::size_t>& rows_a,
                                             const SweepResults& b,
@@ -133,7 +133,7 @@ std::string NameOfRun(const SweepResults& table, std::size_t row) {
                                    : table.run_folders[row];
 }
 
-// Two runs of a folder that nothing in the table tells apart, as the cases of a study.
+// The error for two runs that nothing in the table distinguishes, such as the cases of a study.
 std::string SamePairText(const SweepResults& table, std::size_t first, std::size_t second,
                          const std::vector<std::string>& shared) {
   std::vector<std::string> same;
@@ -171,7 +171,7 @@ struct Pair {
   std::size_t a;
   std::size_t b;
   Key seeds;
-  Key rest;  // of what it is paired by
+  Key rest;  // the other values that it is paired by
 };
 
 void AddScores(const SweepResults& table, std::size_t row, std::vector<std::uint64_t>& bits) {
@@ -180,8 +180,8 @@ void AddScores(const SweepResults& table, std::size_t row, std::vector<std::uint
   }
 }
 
-// Seeds that gave what another one gave in every score of every pair, as where nothing is random:
-// one measurement, however often it was made.
+// Seeds that gave the same as another one in every score of every pair, as where nothing is random:
+// together they are one measurement.
 std::set<Key> RepeatedSeeds(const SweepResults& a, const SweepResults& b,
                             const std::vector<Pair>& pairs) {
   using Scores = std::map<Key, std::vector<std::uint64_t>>;

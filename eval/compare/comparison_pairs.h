@@ -1,4 +1,4 @@
-// Which runs of two sides of a comparison belong together, and which of them count.
+// Pairs the runs of the two sides of a comparison, and selects those that count.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,16 @@
 
 namespace depthgrid {
 
-// Rows of the two tables: a[i] and b[i] make a pair.
+// Rows of the two tables: a[i] and b[i] are a pair.
 struct RunPairs {
   std::vector<std::size_t> a;
   std::vector<std::size_t> b;
   SeedUnits units{{}};
 };
 
-// Runs that meet the conditions and have one value of each axis that both sides have, but for seeds
-// that only repeat another; `comparison` gets what they are paired by, and how many there are and
-// are left out. Throws InputError as Compare() does.
+// Pairs runs that meet the conditions and have equal values on all axes of both sides, without
+// seeds that only repeat another. Fills in the pairing and the counts of `comparison`. Throws
+// InputError as Compare() does.
 RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options,
                  Comparison& comparison);
 

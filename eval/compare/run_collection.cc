@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 
 constexpr double kNothing = std::numeric_limits<double>::quiet_NaN();
 
-// A run's own file of scores, or those that `eval trajectory --json` and `eval map --json` print of
-// another mapper's.
+// A run's own file of scores or, for another mapper's, the output of `eval trajectory --json` and
+// `eval map --json`.
 std::vector<std::string> ScoreFiles(const fs::path& run) {
   const std::string all = (run / "metrics.json").string();
   if (fs::exists(all)) return {all};
@@ -67,7 +67,7 @@ void AddParameters(const fs::path& run, SweepResults& table) {
   }
 }
 
-// What no run states tells none apart.
+// Removes parameters that no run states.
 void DropUnstated(SweepResults& table) {
   std::erase_if(table.parameters, [](const SweepParameter& parameter) {
     return std::all_of(parameter.texts.begin(), parameter.texts.end(),
@@ -75,7 +75,7 @@ void DropUnstated(SweepResults& table) {
   });
 }
 
-// Figures of the last row; columns met for the first time are empty for the rows before.
+// Adds the scores of the last row; new columns are empty for earlier rows.
 void AddMetrics(const std::string& file, SweepResults& table) {
   const std::size_t row = table.rows() - 1;
   for (const auto& [name, value] : MetricColumns(ReadFile(file), file)) {

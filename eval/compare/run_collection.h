@@ -1,4 +1,4 @@
-// Runs as one table, whatever holds them: a sweep, one run's folder, or a folder of runs' folders.
+// Reads runs into one table, from a sweep, a run's folder, or a folder of runs' folders.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace depthgrid {
 
-// Runs that are no sweep's have as parameters what tells which of two runs belong together: of
-// scene, trajectory, frames and the seeds what their run.yaml states. The scores of a run are its
-// metrics.json, or, as of another mapper, trajectory.json and map.json with what `eval trajectory
-// --json` and `eval map --json` print. Throws InputError when the folder holds none.
+// Runs that are not part of a sweep have as parameters what determines pairs: scene, trajectory,
+// frames and seeds, as far as their run.yaml gives them. The scores of a run are its metrics.json
+// or, for other mappers, trajectory.json and map.json with the output of `eval trajectory --json`
+// and `eval map --json`. Throws InputError when the folder contains no runs.
 SweepResults ReadRuns(const std::string& folder);
 
 }  // namespace depthgrid

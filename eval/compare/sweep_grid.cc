@@ -68,8 +68,8 @@ SeedRows RowsBySeed(const SweepGrid& grid, const GridPoint& point,
   return rows;
 }
 
-// Which seeds every point of a line has, in the order of the first point's runs, less those that
-// gave at all of them what one before gave.
+// The seeds that every point of a line has, in the order of the first point's runs, without those
+// that gave the same as an earlier one at all points.
 std::vector<std::string> SharedSeeds(const SweepGrid& grid, const GridPoint& first,
                                      const std::vector<SeedRows>& by_point) {
   std::vector<std::string> shared;
@@ -92,7 +92,7 @@ double Mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Which point has the oracle's runs of the settings of another.
+// Finds the point with the oracle's runs for another point's settings.
 class OraclePoints {
  public:
   explicit OraclePoints(const SweepGrid& grid) {
@@ -116,7 +116,7 @@ class OraclePoints {
   }
 
  private:
-  // The oracle sets the gain itself, so that its runs of one gain are those of all.
+  // The oracle sets the gain itself, so its runs with one gain apply to all gains.
   std::vector<std::size_t> Others(std::vector<std::size_t> values) const {
     values[*mode_] = 0;
     if (gain_) values[*gain_] = 0;
@@ -128,7 +128,7 @@ class OraclePoints {
   std::map<std::vector<std::size_t>, std::size_t> point_of_;
 };
 
-// By point of a line, the oracle's figures of these seeds; empty where one is missing.
+// By point of a line, the oracle's values for these seeds; empty if one is missing.
 std::vector<std::vector<double>> OracleFigures(const SweepGrid& grid, const OraclePoints& oracles,
                                                const std::vector<double>& metric,
                                                const std::vector<std::size_t>& points,
@@ -154,7 +154,8 @@ void FindBest(const SweepGrid& grid, const OraclePoints& oracles, std::size_t ax
   std::vector<SeedRows> by_point;
   for (const std::size_t point : std::exchange(line.points, {})) {
     SeedRows rows = RowsBySeed(grid, grid.points[point], metric);
-    // One whose runs all fail would leave no seed that all points share, and so no best value.
+    // With a point whose runs all failed, the points would share no seed and there would be no best
+    // value.
     (rows.empty() ? line.left_out : line.points).push_back(point);
     if (!rows.empty()) by_point.push_back(std::move(rows));
   }

@@ -1,4 +1,4 @@
-// A sweep's table as a grid: what was varied, which points there are, which runs repeat each.
+// A sweep's table as a grid: its axes, its points, and the runs of each point.
 #pragma once
 
 #include <optional>
@@ -11,17 +11,17 @@
 
 namespace depthgrid {
 
-// An axis that is no seed.
+// An axis other than a seed.
 struct GridAxis {
   std::string key;
   bool numeric = false;
-  std::vector<std::string> texts;  // its values: ascending if numeric, else as they first appear
+  std::vector<std::string> texts;  // its values: ascending if numeric, else in order of appearance
   std::vector<double> numbers;     // the same, if numeric
 };
 
 struct GridPoint {
-  std::vector<std::size_t> values;  // of each axis, index into its texts
-  std::vector<std::size_t> rows;    // the sweep's finished runs of it that did not fail
+  std::vector<std::size_t> values;  // for each axis, index into its texts
+  std::vector<std::size_t> rows;    // its finished runs that did not fail
 };
 
 struct SweepGrid {
@@ -29,30 +29,33 @@ struct SweepGrid {
   std::vector<GridPoint> points;  // in the sweep's order
   std::size_t seed_axes = 0;
   std::vector<std::string> seeds_of_row;  // the texts of all seed axes together
-  // The first row of its point that gave the same in every score, as where nothing is random: one
-  // measurement, however many seeds it was made with. Mostly the row itself.
+  // The first row of the same point with equal values of every score, as where nothing is random;
+  // all these rows are one measurement. Usually the row itself.
   std::vector<std::size_t> measurement_of_row;
 };
 
 SweepGrid GridOf(const SweepResults& results);
 
-// What varies on its own among runs with these texts of all seed axes.
+// The independent units among runs with these texts of all seed axes.
 SeedUnits UnitsOf(const std::vector<std::string>& seeds);
 
 // One line of the grid along a numeric axis, all other axes held.
 struct GridLine {
-  std::vector<std::size_t> points;    // by rising value of the axis
-  std::vector<std::size_t> left_out;  // those of the line without a value: all their runs failed
+  std::vector<std::size_t> points;  // by ascending value of the axis
+  std::vector<std::size_t>
+      left_out;  // points of the line without a value, because all their runs failed
   // Over the seeds that all `points` have; empty if there are none, or fewer than two points.
   std::optional<BestSetting> best;
-  std::size_t seeds = 0;  // on which that rests: of crossed ones as many as one of them has
-  std::vector<double> mean_regret_of_seed;  // by point: what is lost to the oracle of each seed
+  std::size_t seeds =
+      0;  // number of seeds for `best`; of crossed seeds, the number of the smallest axis
+  std::vector<double> mean_regret_of_seed;  // by point: mean loss against the oracle of each seed
   // The oracle is the run of the same seed and other settings with `mapper.fusion.mode: oracle`;
   // else, where a point has none of one of the seeds, the best point of the seed.
   bool to_oracle_runs = false;
 };
 
-// Lines of at least two points, those left out among them. They differ in nothing but the axis.
+// Lines of at least two points, including those left out. The points of a line differ only in the
+// axis.
 std::vector<GridLine> LinesAlong(const SweepGrid& grid, std::size_t axis,
                                  const std::vector<double>& metric, Better better,
                                  const BootstrapOptions& bootstrap);

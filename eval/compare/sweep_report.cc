@@ -30,13 +30,13 @@ namespace {
 namespace fs = std::filesystem;
 using Json = ReportJson;
 
-// More runs than a page can hold: it then has the grid points only.
+// With more runs than this the page lists only grid points.
 constexpr std::size_t kMostRunsListed = 20'000;
 constexpr int kSignificantDigits = 6;
-// Whole numbers below it are counts, and kept whole.
+// Integers below this are counts and are not rounded.
 constexpr double kMostCounted = 1e15;
 
-// Its place among what a reader looks at first, counted from 1; 0 for the others.
+// The metric's rank among the main scores, from 1; 0 for others.
 int MainRank(const std::string& metric) {
   const auto main = ScoresOfASweepsPage();
   const auto found = std::find(main.begin(), main.end(), metric);
@@ -50,8 +50,8 @@ Json Short(double value) {
   return std::strtod(fmt::format("{:.{}g}", value, kSignificantDigits).c_str(), nullptr);
 }
 
-// The intervals' ends wander by about 1 % of the width at 10,000 resamples. What a page has dozens
-// of, and large sweeps, whose page should not take minutes, get fewer.
+// With 10,000 resamples the intervals' ends vary by about 1 % of the width. Minor metrics, of which
+// there are dozens, and large sweeps get fewer, so that the page does not take minutes.
 BootstrapOptions BootstrapFor(const SweepResults& results, bool main_metric) {
   constexpr double kMostDraws = 2e7;  // some seconds
   constexpr double kFewest = 1000.0;
@@ -63,7 +63,7 @@ BootstrapOptions BootstrapFor(const SweepResults& results, bool main_metric) {
   return options;
 }
 
-// A value as the command of a run takes it, which is started in the sweep's folder.
+// A value for the command of a run, which is started in the sweep's folder.
 std::string SetText(const SweepResults& results, const std::string& key, const std::string& text) {
   const auto folder = results.environment.find("files_from");
   const bool is_file = IsFileKey(key) && IsFileName(text);
@@ -95,16 +95,16 @@ Json PointsJson(const SweepGrid& grid) {
   return json;
 }
 
-// A score as the page shows it.
+// A score in the form in which the page shows it.
 struct ShownMetric {
   std::string name;
-  std::string score;  // that it is of: another name where it is a distance
+  std::string score;  // the score's name, which differs from the metric's for a distance
   Better better = Better::kLower;
   std::vector<double> values;
 };
 
-// One that should have a value is there as it is, of which neither more nor less is better, and as
-// its distance from that value, which is better when lower.
+// A score with a target appears twice: unchanged, without a better direction, and as its distance
+// from the target, for which lower is better.
 std::vector<ShownMetric> ShownMetrics(const SweepResults& results) {
   std::vector<ShownMetric> shown;
   for (const auto& [name, values] : results.metrics) {
@@ -146,7 +146,7 @@ Json LinesJson(const SweepGrid& grid, std::size_t axis, const ShownMetric& metri
   return json;
 }
 
-// What one grid point gives, over its seeds.
+// Adds the statistics of one grid point over its seeds.
 void AddPoint(const SweepGrid& grid, const GridPoint& point, const std::vector<double>& values,
               std::map<std::size_t, Resamples>& resamples, const BootstrapOptions& bootstrap,
               Json& json) {
@@ -214,7 +214,7 @@ Json RunsJson(const SweepResults& results, const SweepGrid& grid) {
     point_of_row[row] = index_of.try_emplace(results.points[row], index_of.size()).first->second;
   }
   json["point"] = point_of_row;
-  Json folders = Json::object();  // of the runs that have a page
+  Json folders = Json::object();  // of runs that have a page
   Json failures = Json::object();
   for (std::size_t row = 0; row < results.rows(); ++row) {
     const std::string folder = fmt::format("runs/{}", results.runs[row]);
@@ -241,7 +241,7 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
   json["failed"] = std::count_if(results.failures.begin(), results.failures.end(),
                                  [](const std::string& reason) { return !reason.empty(); });
   json["environment"] = results.environment;
-  json["environment"].erase("jobs");  // the page is the same however many were done at a time
+  json["environment"].erase("jobs");  // the page must not depend on the number of parallel jobs
   json["seed_keys"] = Json::array();
   for (const SweepParameter& parameter : results.parameters) {
     if (parameter.IsSeed()) json["seed_keys"].push_back(parameter.key);
@@ -266,7 +266,7 @@ std::string TextOf(const SweepResults& results, const char* key) {
   return found != results.environment.end() ? found->second : "";
 }
 
-// What all runs have in common, as far as a head can say it.
+// The main settings common to all runs, for the page's head.
 std::string MeasuredBy(const SweepResults& results) {
   std::set<std::string> varied;
   for (const SweepParameter& parameter : results.parameters) varied.insert(parameter.key);
@@ -275,8 +275,9 @@ std::string MeasuredBy(const SweepResults& results) {
   return MeasuredSettings(Config::FromText(experiment, results.folder), varied);
 }
 
-// What every run starts from: the keys given for it, so that an axis over a preset (slam.profile)
-// sets what it set in the sweep. A sweep of an earlier version knows every effective key alone.
+// The experiment common to all runs: only the given keys, so that an axis over a preset
+// (slam.profile) sets the same keys as in the sweep. Sweeps of earlier versions have only all
+// effective keys.
 std::string ExperimentYaml(const SweepResults& results) {
   const std::string given = TextOf(results, "given");
   if (given.empty()) return TextOf(results, "experiment");

@@ -7,9 +7,9 @@
 
 namespace depthgrid {
 
-// From the sweep's database. Also writes experiment.yaml, the keys that each run started from, so
-// that the commands the page shows can be run in the folder. Throws InputError when the folder is
-// no sweep's or none of its runs is finished yet.
+// Writes the page from the sweep's database, and experiment.yaml with the keys common to all runs,
+// so that the commands on the page can be run in the folder. Throws InputError when the folder is
+// not a sweep's or none of its runs is finished.
 void WriteSweepReport(const std::string& folder, const ReportPlace& place);
 
 }  // namespace depthgrid

@@ -8,7 +8,7 @@
 namespace depthgrid {
 namespace {
 
-// As where the intrinsics are those of images of another size.
+// For example, intrinsics for images of another size.
 std::optional<std::string> DoubtOfCentre(const PinholeCamera& camera) {
   const auto is_inside = [](double centre_px, int size_px) {
     return centre_px >= -0.5 && centre_px <= size_px - 0.5;
@@ -22,8 +22,8 @@ std::optional<std::string> DoubtOfCentre(const PinholeCamera& camera) {
       camera.cx_px, camera.cy_px, camera.width_px, camera.height_px);
 }
 
-// As where only one side of the image was set, which scales only one of the preset's focal lengths,
-// or only one of these.
+// For example, if only the width or height was set, which scales only one of the preset's focal
+// lengths, or only one focal length.
 std::optional<std::string> DoubtOfPixels(const SensorOptions& sensor, const PinholeCamera& camera) {
   constexpr double kMostApart = 1.05;  // the presets have 1.007
   const auto [least_px, most_px] = std::minmax(camera.fx_px, camera.fy_px);

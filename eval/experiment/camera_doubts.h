@@ -1,4 +1,4 @@
-// Cameras that are likely not meant.
+// Warnings about unlikely cameras.
 #pragma once
 
 #include <string>
@@ -8,8 +8,8 @@
 
 namespace depthgrid {
 
-// A principal point beside the image, or pixels that are not square though nobody said so: a line
-// each. Throws InputError for settings that make no camera.
+// Warns of a principal point outside the image and of pixels that are unintentionally not square,
+// one line each. Throws InputError for settings of an impossible camera.
 std::vector<std::string> DoubtsOfCamera(const SensorOptions& sensor);
 
 }  // namespace depthgrid

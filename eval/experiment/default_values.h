@@ -1,4 +1,4 @@
-// Settings put back to their defaults, by the paths of their keys.
+// Resets settings to their defaults, by the paths of their keys.
 #pragma once
 
 #include <array>
@@ -20,13 +20,14 @@ using SettingValue = std::variant<double, int, std::uint64_t, bool, std::string,
                                   std::vector<double>, std::array<double, 3>>;
 // The values in the order they are visited.
 std::unique_ptr<OptionsVisitor> MakeValueReader(std::vector<SettingValue>& values);
-// Sets those of these keys to the values of the same order; paths begin with `group`.
+// Sets the settings for which `keys` is true to `values`, which are in order of visits; paths begin
+// with `group`.
 std::unique_ptr<OptionsVisitor> MakeValueSetter(const std::vector<SettingValue>& values,
                                                 const std::string& group, IsOneOfKeys keys);
 }  // namespace internal
 
-// `group` is the path of the options, "slam"; empty where they are the whole. A choice that
-// presets others (slam.profile) must be at its default already.
+// `group`: the path of the options, such as "slam"; empty for all. A setting that presets others
+// (slam.profile) must already have its default.
 template <typename Options>
 Options WithDefaults(Options options, const std::string& group, const IsOneOfKeys& keys) {
   std::vector<internal::SettingValue> values;

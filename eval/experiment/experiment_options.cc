@@ -11,8 +11,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A file name becomes absolute, so that run.yaml means the same from everywhere; a shipped or named
-// thing stays a name.
+// Makes file names absolute, so that run.yaml is valid from any folder; names of shipped files are
+// kept.
 void ResolveFile(std::string& name, const std::string& base_folder) {
   if (IsFileName(name))
     name = fs::weakly_canonical(fs::absolute(fs::path(base_folder) / name)).string();

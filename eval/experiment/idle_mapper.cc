@@ -1,4 +1,4 @@
-// Which of the mapper's settings have no effect beside its others.
+// Finds settings of the mapper without effect because of its others.
 #include <fmt/format.h>
 
 #include "eval/experiment/idle_settings.h"
@@ -7,7 +7,7 @@
 namespace depthgrid {
 namespace {
 
-// What only the other method reads. (The report's pictures are of submaps with either.)
+// Settings that only the other method reads. (The report's pictures are of submaps with either.)
 void AddOtherMethod(const MapperOptions& mapper, IdleSettingList& idle) {
   const std::string chosen = Stands(mapper, "mapper", "method");
   const bool is_surfel = mapper.method == MapperMethod::kSurfel;
@@ -37,7 +37,7 @@ void AddGrid(const GridOptions& grid, IdleSettingList& idle) {
   for (const char* key : {"mapper.grid.min_observations", "mapper.grid.earlier_scans"}) {
     idle.push_back({key, Stands(grid, "mapper.grid", "raster")});
   }
-  // Thinning walls reads it too.
+  // Also used for thinning walls.
   if (keeps_walls) {
     idle.push_back({"mapper.grid.hit_weight", Stands(grid, "mapper.grid", "raster")});
   }
@@ -70,7 +70,7 @@ void AddFusion(const FusionOptions& fusion, IdleSettingList& idle) {
   if (fusion.mode != FusionMode::kLearned) {
     for (const char* key : {"mapper.fusion.judge_innovations", "mapper.rounds.again"}) add(key);
   }
-  // What the profile is taken for, all but the choice itself.
+  // Settings replaced by the profile's noise.
   if (fusion.slam_noise.source != SlamNoiseSource::kProfile) return;
   const std::string group = "mapper.fusion.slam_noise";
   for (const std::string& key : KeyPathsOf(fusion.slam_noise)) {
@@ -79,14 +79,14 @@ void AddFusion(const FusionOptions& fusion, IdleSettingList& idle) {
   }
 }
 
-// What searching for loops alone reads; the gates of its matches are relocation's too.
+// Settings that only the search for loops reads; relocation also uses the gates of its matches.
 constexpr const char* kOfLoopSearch[] = {"every_m",          "min_way_m",          "drift_share",
                                          "turn_deg_per_m",   "min_window_m",       "max_window_m",
                                          "min_window_deg",   "max_window_deg",     "candidates",
                                          "min_correction_m", "min_correction_deg", "consenting",
                                          "consent_ways",     "likely_drift_share", "idle_searches",
                                          "most_unanswered",  "consent_m",          "consent_deg"};
-// What a relocation alone reads, once SLAM was lost.
+// Settings that only relocation after a loss of SLAM reads.
 constexpr const char* kOfRelocation[] = {
     "min_lost_s",       "min_lost_epoch_s", "window_m",      "speed_mps", "max_window_m",
     "every_m",          "every_deg",        "most_searches", "place",     "min_score",

@@ -18,10 +18,10 @@ struct StatedKey {
   std::string text;
 };
 
-// They set other keys, but none that is given.
+// They set other keys, except those that are given.
 constexpr std::array<std::string_view, 2> kPresets = {"slam.profile", "slam.loops.scenario"};
 
-// The single values of a tree, those in groups by their whole path.
+// The values of a tree, with their full paths.
 void AddStated(const Config& config, const std::string& prefix, std::vector<StatedKey>& stated) {
   for (const ConfigEntry& entry : config.Entries()) {
     if (entry.map) {
@@ -49,7 +49,7 @@ std::string SettingText(const std::string& yaml, const std::string& key) {
   return fmt::format("{}", fmt::join(Config::FromText(yaml, "").List(key), ", "));
 }
 
-// Whether two experiments, as YAML of every effective key, differ in this one alone.
+// Whether two experiments, given as YAML of all effective keys, differ only in this key.
 bool DifferInOnly(const std::string& key, const std::string& a, const std::string& b) {
   const std::vector<StatedKey> of_a = StatedKeys(Config::FromText(a, ""));
   const std::vector<StatedKey> of_b = StatedKeys(Config::FromText(b, ""));
@@ -59,7 +59,7 @@ bool DifferInOnly(const std::string& key, const std::string& a, const std::strin
   return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(), alike);
 }
 
-// Were it not for the scale.
+// Whether poses would drift with a drift_scale above 0.
 bool WouldDrift(const SlamOptions& slam) {
   return slam.walk_translation_m > 0.0 || slam.walk_rotation_deg > 0.0 ||
          slam.drift_speed_mps > 0.0 || slam.drift_turn_dps > 0.0;
@@ -75,7 +75,7 @@ bool HasBias(const SlamOptions& slam) {
   return slam.bias_translation_m > 0.0 || slam.bias_rotation_deg > 0.0;
 }
 
-// Jitter is not tilted.
+// Jitter does not count, because it is not tilted.
 bool TurnsBesideJitter(const SlamOptions& slam) {
   return slam.bias_rotation_deg > 0.0 || (Jumps(slam) && slam.jump_rotation_deg > 0.0) ||
          (IsEverLost(slam) && slam.relocalisation_rotation_deg > 0.0) ||
@@ -96,7 +96,7 @@ void AddSlamLoops(const SlamLoopOptions& loops, IdleSettingList& idle) {
   }
 }
 
-// `exact`: why all of its poses are the true ones; empty where they are not.
+// `exact`: why all its poses are the true ones; empty if they are not.
 void AddSlam(const SlamOptions& slam, const std::string& exact, IdleSettingList& idle) {
   const auto add = [&](std::initializer_list<const char*> keys, const std::string& reason) {
     for (const char* key : keys) {
@@ -140,8 +140,8 @@ IsOneOfKeys KeysIn(const IdleSettingList& idle) {
   return [&idle](const std::string& key) { return Find(idle, key) != nullptr; };
 }
 
-// What presets or scales others at its default: a preset's values are all there, and what a scale
-// of 0 takes away is idle.
+// Sets presets and scales to their defaults: a preset's values are all present, and what a scale of
+// 0 removes is idle.
 SlamOptions WithoutPresets(SlamOptions slam) {
   const SlamOptions usual;
   slam.profile = usual.profile;
@@ -165,7 +165,7 @@ bool LimitIsSoft(const SensorOptions& sensor) {
   return sensor.grazing_softness_deg > 0.0 && sensor.grazing_limit_deg < kNoGrazingLimitDeg;
 }
 
-// The same of the depth images.
+// The same for the depth images.
 std::string WhyClean(const SensorOptions& sensor) {
   if (sensor.flying_pixels > 0.0) return "";
   if (sensor.noise == DepthNoiseModel::kNone) return Stands(sensor, "sensor", "noise");
@@ -177,7 +177,7 @@ bool HasFocalLengths(const SensorOptions& sensor) {
   return sensor.fx_px > 0.0 && sensor.fy_px > 0.0;
 }
 
-// Without a model only the pixels at edges and in shadow change.
+// Without a noise model only pixels at edges and in shadow change.
 void AddSensor(const SensorOptions& sensor, IdleSettingList& idle) {
   if (HasFocalLengths(sensor)) {
     idle.push_back({"sensor.hfov_deg", "sensor.fx and sensor.fy are set"});
@@ -206,7 +206,7 @@ void AddSeeds(const ExperimentOptions& options, IdleSettingList& idle) {
   const std::string clean = WhyClean(options.sensor);
   if (!exact.empty()) idle.push_back({"slam_seed", exact});
   if (!clean.empty()) idle.push_back({"depth_seed", clean});
-  // The two are all that the experiment's own is for.
+  // The experiment's seed affects only these two.
   const std::string depth = options.depth_seed != 0 ? "depth_seed is set" : clean;
   const std::string slam = options.slam_seed != 0 ? "slam_seed is set" : exact;
   if (!depth.empty() && !slam.empty()) idle.push_back({"seed", depth + " and " + slam});
@@ -270,7 +270,7 @@ ExperimentOptions WithoutIdleSettings(ExperimentOptions options) {
   ExperimentOptions used = WithDefaults(std::move(options), "", is_idle);
   used.slam_seed = slam_seed;
   used.depth_seed = depth_seed;
-  used.seed = 0;  // the two are all it is for
+  used.seed = 0;  // it affects only the other two
   return used;
 }
 

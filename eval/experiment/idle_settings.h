@@ -1,5 +1,5 @@
-// Settings that have no effect beside the others (a gain that is learnt, the range of a laser for
-// depth images): which they are, why, and what to say to whoever set them.
+// Finds settings without effect because of others (a gain that is learnt, the range of a laser with
+// depth images), with reasons, and makes the warnings about them.
 #pragma once
 
 #include <functional>
@@ -26,34 +26,35 @@ std::string Stands(const Options& options, const std::string& group, const std::
 
 IdleSettingList IdleSettings(const MapperOptions& mapper);
 IdleSettingList IdleSettings(const ExperimentOptions& options);
-// Of a recording of this kind. `input_is` is the reason that the kind gives: "seq is a TUM RGB-D
-// folder". `with_loops`: loops were given for it.
+// For a recording of this format. `input_is`: the reason that follows from the format, "seq is a
+// TUM RGB-D folder". `with_loops`: whether loops were given.
 IdleSettingList IdleSettings(const SequenceOptions& options, SequenceFormat format,
                              const std::string& input_is, bool with_loops);
 
 // Those of `a` that are idle in `b` as well, with the reasons in `a`.
 IdleSettingList InBoth(const IdleSettingList& a, const IdleSettingList& b);
 
-// The same experiment for the same result: what has no effect is at its default.
+// Sets options without effect to their defaults; the result is the same.
 ExperimentOptions WithoutIdleSettings(ExperimentOptions options);
 
 // Keys that set others: the SLAM profile, the loop scenario.
 bool IsPreset(const std::string& key);
-// Why one of them sets nothing; empty where it does, or is the same without. `with` and `without`
-// it: every effective key as YAML.
+// Why such a key sets nothing; empty if it does, or if it is the same without. `with` and `without`
+// it: all effective keys as YAML.
 std::string WhyPresetIsIdle(const std::string& key, const std::string& with,
                             const std::string& without);
 
-// What of the overrides (--set) is idle, a line each. `settings_with` gives every effective key as
-// YAML with some of them: one that changes nothing at all is no mistake.
+// Warnings about overrides (--set) without effect, one line each. `settings_with` returns all
+// effective keys as YAML with some of the overrides; an override that changes no key is not
+// reported.
 using SettingsWith = std::function<std::string(const std::vector<std::string>& set)>;
 std::vector<std::string> DoubtsOfOverrides(const std::vector<std::string>& set,
                                            const IdleSettingList& idle,
                                            const SettingsWith& settings_with);
 
-// What of an experiment's file is idle, a line each: values other than the defaults, and idle by
-// what the file says itself (`alone` reads it), whatever was set besides. Nothing of a run.yaml,
-// which states everything. `is_overridden` says which keys the file does not decide.
+// Warnings about an experiment file's settings without effect, one line each: values other than the
+// defaults that the file itself makes idle (`alone` reads it), regardless of overrides. Empty for a
+// run.yaml, which states everything. `is_overridden`: keys that are not determined by the file.
 using IsOverridden = std::function<bool(const std::string& key)>;
 std::vector<std::string> DoubtsOfFile(const Config& file, const IdleSettingList& idle,
                                       const std::function<ExperimentOptions()>& alone,

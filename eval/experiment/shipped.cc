@@ -23,7 +23,7 @@ const char* WordFor(ShippedKind kind) {
   Broken("a shipped file is of one of the kinds");
 }
 
-// None of what is looked for is a folder.
+// Scenes, experiments and sweeps are never folders.
 [[noreturn]] void RefuseFolder(const std::string& folder, ShippedKind kind) {
   switch (kind) {
     case ShippedKind::kScene:

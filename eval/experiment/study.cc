@@ -57,7 +57,7 @@ Config Without(const Config& config, const std::vector<std::string>& keys) {
 StudyCase CaseOf(const Config& entry) {
   CaseHead head;
   entry.Only(kCaseHeadKeys).Read(head);
-  // The name becomes a folder's.
+  // The name is used as a folder name.
   const bool plain = std::all_of(head.name.begin(), head.name.end(), [](unsigned char c) {
     return std::isalnum(c) != 0 || c == '_' || c == '-';
   });
@@ -82,7 +82,7 @@ void WarnOfRepeats(Study& study) {
 }
 
 void WarnOfCameras(Study& study) {
-  std::set<std::string> known;  // mostly all cases have one camera
+  std::set<std::string> known;  // usually all cases have the same camera
   for (std::size_t i = 0; i < study.experiments.size(); ++i) {
     for (const std::string& doubt : DoubtsOfCamera(study.experiments[i].sensor)) {
       if (!known.insert(doubt).second) continue;
@@ -91,7 +91,7 @@ void WarnOfCameras(Study& study) {
   }
 }
 
-// Of the keys of a case those that are idle there, of the shared ones those that are in every case.
+// Warns of a case's own keys that are idle in it, and of shared keys that are idle in every case.
 void WarnOfIdle(const Config& shared, const std::vector<Config>& cases, const Config& overrides,
                 Study& study) {
   Study alone;  // without the overrides
@@ -113,8 +113,8 @@ void WarnOfIdle(const Config& shared, const std::vector<Config>& cases, const Co
   add(shared, everywhere, alone.experiments.front(), is_overridden);
 }
 
-// `config` is what is left of the file without its notes and cases, which know their lines; a copy
-// of them would not.
+// `config`: the file without its notes and cases, which are passed separately because copies would
+// not know their lines.
 StudyOutline OutlineOf(const Config& config, const std::vector<Config>& notes,
                        const std::vector<Config>& cases) {
   StudyOutline outline;

@@ -1,4 +1,4 @@
-// A study: several experiments side by side, with the figures that others published for them.
+// A study: several experiments side by side, with published results.
 #pragma once
 
 #include <optional>
@@ -13,18 +13,18 @@ namespace depthgrid {
 
 struct StudyCase {
   std::string name;  // of the case's folder
-  // Mean Euclidean error of the trajectory as published; nothing for a case without.
+  // Published mean Euclidean error of the trajectory, if any.
   std::optional<double> published_mean_m;
 };
 
-// Something a reader must know to compare with what was published.
+// A note for the comparison with published results.
 struct StudyNote {
   std::string title;
   std::string text;
 };
 
-// What the page calls its parts: a study of a paper's own says which of its tables and figures they
-// stand against.
+// Headings on the page: a study of a paper names the paper's tables and figures that the parts
+// correspond to.
 struct StudyHeadings {
   std::string table = "Errors of the trajectories";
   std::string maps = "Maps";
@@ -39,22 +39,22 @@ struct StudyOutline {
   std::string title;
   StudyHeadings headings;
   std::vector<StudyNote> notes;
-  std::vector<StudyCase> cases;  // at least one; names differ
+  std::vector<StudyCase> cases;  // at least one; names are distinct
 };
 
 struct Study {
   StudyOutline outline;
-  std::vector<ExperimentOptions> experiments;  // one a case
+  std::vector<ExperimentOptions> experiments;  // one per case
   std::vector<std::string> overrides;          // as given on the command line, for the page
-  std::vector<std::string> warnings;           // what is likely not meant, a line each
+  std::vector<std::string> warnings;           // one line each
 };
 
-// What has no effect in any case.
+// Settings without effect in any case.
 IdleSettingList IdleInEveryCase(const Study& study);
 
 bool IsStudy(const Config& config);
 
-// Without looking at the experiments' keys. Throws InputError.
+// Does not read the experiments' keys. Throws InputError.
 StudyOutline ReadStudyOutline(Config config);
 
 // A case's keys override those at the top of the file, and `overrides` both. Throws InputError.

@@ -1,4 +1,3 @@
-// Binary data inside text.
 #pragma once
 
 #include <string>

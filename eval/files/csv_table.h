@@ -1,4 +1,4 @@
-// A small CSV of numbers, as this program writes them: a header line, commas, no quotes.
+// CSV files of numbers as this program writes them: a header line, commas, no quotes.
 #pragma once
 
 #include <map>
@@ -11,13 +11,13 @@ struct CsvTable {
   std::map<std::string, std::vector<double>> columns;  // NaN for an empty cell
   std::size_t rows = 0;
 
-  // Throws InputError naming the file when the column is not there.
+  // Throws InputError, which names the file, when there is no such column.
   const std::vector<double>& Column(const std::string& name) const;
 
   std::string place;
 };
 
-// Throws InputError for a missing file, a row of another length or a cell that is no number.
+// Throws InputError for a missing file, a row of another length or a cell that is not a number.
 CsvTable ReadCsv(const std::string& path);
 
 }  // namespace depthgrid

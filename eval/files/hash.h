@@ -1,5 +1,4 @@
-// A 64-bit content hash (FNV-1a over words): keys of cached content and checksums against damage,
-// not against malice.
+// A 64-bit content hash (FNV-1a over words), for cache keys and checksums; not cryptographic.
 #pragma once
 
 #include <cstdint>
@@ -38,11 +37,12 @@ class ContentHash {
 
   std::uint64_t value() const { return state_; }
   std::string Hex() const;
-  // Whether a text may be some Hex().
+  // Whether a text has the form of Hex().
   static bool IsHex(std::string_view text);
 
  private:
-  // FNV's prime, and a fold of the high half: plain FNV over words never moves high bits down.
+  // FNV's prime, then the high half is folded in, because FNV over words never moves high bits
+  // down.
   void Mix(std::uint64_t word) {
     state_ = (state_ ^ word) * 0x100000001b3U;
     state_ ^= state_ >> 32U;

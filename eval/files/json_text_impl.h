@@ -1,4 +1,4 @@
-// JSON as text.
+// Serialises JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,8 +6,8 @@
 
 namespace depthgrid {
 
-// Names of folders, titles and warnings may be no UTF-8, which JSON has to be: the library throws
-// then, when all the work is done. What cannot be read stands as U+FFFD.
+// Names of folders, titles and warnings may not be valid UTF-8, for which the library would throw
+// when all the work is done. Invalid bytes become U+FFFD.
 template <typename Json>
 std::string JsonText(const Json& json, int indent = -1) {
   return json.dump(indent, ' ', false, Json::error_handler_t::replace);

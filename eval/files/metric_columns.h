@@ -1,4 +1,4 @@
-// The scores of a run as named numbers, one column each.
+// The scores of a run as columns: named numbers.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace depthgrid {
 
-// The figures of a metrics.json under their paths there, NaN for null, less what IsBreakdown().
-// `place` names the text in errors.
+// The numbers of a metrics.json with their paths, NaN for null, without those for which
+// IsBreakdown(). `place` names the text in errors.
 std::vector<std::pair<std::string, double>> MetricColumns(const std::string& metrics_json,
                                                           const std::string& place);
 
-// "|NAME - 1|": how far a score is from the value it should have.
+// "|NAME - 1|": name of the distance of a score from its target.
 std::string DistanceName(const std::string& metric, double target);
 
 }  // namespace depthgrid

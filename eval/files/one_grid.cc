@@ -9,7 +9,7 @@ namespace depthgrid {
 namespace {
 
 bool IsUsable(const GridGeometry& both, std::size_t cells_of_maps) {
-  constexpr std::size_t kSoon = std::size_t{1} << 24;  // done with in seconds whatever they are
+  constexpr std::size_t kSoon = std::size_t{1} << 24;  // sizes up to this take only seconds
   constexpr std::size_t kMostSpread = 16;
   return both.size() <= kSoon ||
          (both.size() <= kMaxMapCells && both.size() <= kMostSpread * cells_of_maps);

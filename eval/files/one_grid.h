@@ -1,4 +1,4 @@
-// Maps that are laid on each other, to be scored or shown.
+// A common grid for two maps that are scored or shown together.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace depthgrid {
 
-// The rectangle around two maps of one resolution. Throws InputError for maps so far apart that
-// most of it belongs to neither: what is done with it would take minutes, and all memory.
+// The rectangle around two maps of the same resolution. Throws InputError for maps so far apart
+// that most of it belongs to neither, because it would take minutes and all memory.
 GridGeometry OneGridAround(const GridGeometry& known, const std::string& known_path,
                            const GridGeometry& other, const std::string& other_path);
 

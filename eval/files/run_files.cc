@@ -24,7 +24,7 @@ std::size_t PriorScansOf(const RunFiles& run) {
   return static_cast<std::size_t>(std::count_if(run.scans.begin(), run.scans.end(), is_prior));
 }
 
-// The page shows both on each other. A map may be another one by now that a user has put there.
+// The page overlays both, and a user may have replaced one of the maps.
 void RequireOneGrid(const std::string& map_path, const StateMap& map, const std::string& other_path,
                     const std::optional<StateMap>& other) {
   if (!other) return;
@@ -47,7 +47,7 @@ bool IsMapYaml(const fs::path& path) {
   }
 }
 
-// A map as map_server reads it: this file, or one in this folder. Empty where there is none.
+// A map in map_server's format: `path` itself or a file in that folder; empty if there is none.
 std::string MapPictureAt(const fs::path& path) {
   std::error_code error;
   if (IsMapYaml(path) || path.extension() == ".pgm") return path.string();

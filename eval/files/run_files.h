@@ -1,4 +1,4 @@
-// A run's folder read back: what reports, comparisons and other later looks at a run need.
+// Reads a run's folder, for reports and comparisons.
 #pragma once
 
 #include <optional>
@@ -18,9 +18,9 @@ struct RunFiles {
   std::string folder;
   std::string settings;      // run.yaml
   std::string metrics_json;  // empty for recorded data
-  std::string warnings;      // a line each
+  std::string warnings;      // one line each
   StateMap map;
-  std::optional<StateMap> input_map;  // in the folders of a study: SLAM's poses alone
+  std::optional<StateMap> input_map;  // the map at SLAM's poses; only in the folders of a study
   std::optional<StateMap> truth_map;
   std::optional<CellSet> observable;
   std::optional<Trajectory> truth;
@@ -29,22 +29,22 @@ struct RunFiles {
   Trajectory est;
   CsvTable frames;
   std::vector<StoredScan> scans;
-  // So many of them, the first, are of the finished map that the run went on in (`--map`): all when
-  // it was only placed there (`--localise`), which keeps the numbers of the run that made the map.
+  // Number of leading scans that are of the prior map (`--map`). All of them after `--localise`;
+  // these keep the frame numbers of the run that made the map.
   std::size_t prior_scans = 0;
   bool only_placed = false;
 };
 
-// Throws InputError when there is no such folder, or it is no run's.
+// Throws InputError when there is no such folder or it is not a run's.
 void RequireRunFolder(const std::string& folder);
 
-// Throws InputError when the folder is no run's, or a file of it is damaged.
+// Throws InputError when the folder is not a run's or one of its files is damaged.
 RunFiles ReadRunFolder(const std::string& folder);
 
-// How much of the unknown is shown around a map.
+// Margin of unknown cells shown around a map.
 constexpr int kMapMarginCells = 4;
 
-// A setting as text, the items of a list with commas between; empty when it is not there or empty.
+// A setting as text, with commas between the items of a list; empty if missing.
 std::string SettingOf(const Config& settings, const std::string& key);
 
 }  // namespace depthgrid

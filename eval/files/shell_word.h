@@ -1,11 +1,11 @@
-// Names in commands that a shell reads: those the program shows and those it gives to Slurm.
+// Quoting for shell commands that the program prints or gives to Slurm.
 #pragma once
 
 #include <string>
 
 namespace depthgrid {
 
-// `text` as one word of a shell, in quotes if need be.
+// `text` as one shell word, quoted if necessary.
 std::string ShellWord(const std::string& text);
 
 }  // namespace depthgrid

@@ -15,7 +15,7 @@ namespace {
 
 struct Rows {
   std::vector<std::optional<Pose3>> poses;
-  std::vector<double> stamps_s;  // empty: it has none
+  std::vector<double> stamps_s;  // empty if the file has none
 };
 
 Rows RowsOfMatrices(const std::string& text, const std::string& path,
@@ -25,7 +25,8 @@ Rows RowsOfMatrices(const std::string& text, const std::string& path,
   return rows;
 }
 
-// One that had to be mended has other rows than its file.
+// A file that had to be corrected while reading is rejected, because its poses no longer correspond
+// to its rows.
 Rows RowsOfTum(const std::string& text, const std::string& path, const std::string& other,
                std::vector<std::string>& warnings) {
   const TrajectoryFile file = ParseTrajectory(text, path);

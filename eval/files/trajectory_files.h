@@ -1,5 +1,5 @@
-// Two trajectories that are to be compared, from files of either kind: TUM's, whose poses find each
-// other by their stamps, or a matrix a pose (KITTI's), which has none.
+// Reads two trajectories to be compared, from TUM files, whose poses are paired by stamps, or files
+// with one matrix per pose (KITTI's), which have no stamps.
 #pragma once
 
 #include <string>
@@ -12,16 +12,16 @@ namespace depthgrid {
 struct TrajectoryFiles {
   Trajectory reference;
   Trajectory estimate;
-  // Where either file has no stamps, their rows belong together in order, and have the same stamps
-  // here: those of the other file or, without seconds, the rows' numbers from 0.
+  // If either file has no stamps, rows are paired in order and have equal stamps here: those of the
+  // other file or, if neither has stamps, row numbers from 0.
   bool by_row = false;
   bool has_seconds = true;
   std::vector<std::string> warnings;
 };
 
-// Rows whose pose is missing in either file (NaN, damaged) pair with nothing and are counted.
-// Throws InputError for files that do not pair by row: of other lengths, or a TUM file whose rows
-// are not all poses in order of time.
+// Rows whose pose is missing in either file (NaN, damaged) are left out and counted. Throws
+// InputError for files that cannot be paired by row: with different lengths, or a TUM file whose
+// rows are not all poses in order of time.
 TrajectoryFiles ReadTrajectoryFiles(const std::string& reference, const std::string& estimate);
 
 }  // namespace depthgrid

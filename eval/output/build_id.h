@@ -1,12 +1,12 @@
-// Which sources the program was built from, for the provenance of what it writes.
+// The sources that the program was built from, for provenance.
 #pragma once
 
 #include <string>
 
 namespace depthgrid {
 
-// The commit in 12 digits, "-dirty" behind it where files were changed since; "unknown" where the
-// sources lay in no git checkout.
+// The commit in 12 digits, followed by "-dirty" if files were changed since; "unknown" if the
+// sources were not in a git checkout.
 std::string BuildId();
 
 // "0.1.0 (f623e4dbb7e7)"

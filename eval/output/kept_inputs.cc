@@ -14,19 +14,19 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path Resolved(const fs::path& path) {
-  std::error_code error;  // of a pipe, say, which has no path
+  std::error_code error;  // such as for a pipe, which has no path
   fs::path resolved = fs::weakly_canonical(fs::absolute(path), error);
   if (error) resolved = fs::absolute(path).lexically_normal();
   return resolved.has_filename() ? resolved : resolved.parent_path();
 }
 
-// Empty when it is not below the folder.
+// The path relative to `folder`; empty if it is not below it.
 fs::path Below(const fs::path& folder, const fs::path& path) {
   const fs::path relative = path.lexically_relative(folder);
   return relative.empty() || *relative.begin() == ".." || relative == "." ? fs::path() : relative;
 }
 
-// A file, as found and as what it links to, and the files of a folder.
+// A file, both its path and its link's target, or the files of a folder.
 std::vector<fs::path> FilesAt(const fs::path& path) {
   std::error_code error;
   if (fs::is_directory(path, error)) {
@@ -34,7 +34,8 @@ std::vector<fs::path> FilesAt(const fs::path& path) {
     for (const auto& entry : fs::directory_iterator(Resolved(path), error)) {
       files.push_back(entry.path());
     }
-    std::sort(files.begin(), files.end());  // the same one is named everywhere
+    std::sort(files.begin(),
+              files.end());  // so that messages do not depend on the file system's order
     return files;
   }
   const fs::path absolute = fs::absolute(path);
@@ -61,7 +62,7 @@ void RequireInputsKept(const std::string& output, const FileRule& is_changed,
   const fs::path folder = Resolved(output);
   for (const std::string& input : inputs) {
     if (input.empty()) continue;
-    // The names of a sequence's own files are those of no result's at the top of its folder.
+    // A sequence as both input and output folder: its own files have no names of result files.
     if (fs::is_directory(input) && Resolved(input) == folder) continue;
     for (const fs::path& file : FilesAt(input)) {
       const fs::path relative = Below(folder, file);

@@ -1,4 +1,4 @@
-// What a command reads stays as it is: it is not written where it lies.
+// Protects a command's inputs from being overwritten by its output.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@ namespace depthgrid {
 void RequireInputsKept(const std::string& output, const std::string& option,
                        const std::vector<std::string>& inputs);
 
-// Throws InputError when one of `inputs`, or of the files of a folder among them, lies in the
-// folder `output` as one that is to be written or removed.
+// Throws InputError when one of `inputs`, or of the files of a folder among them, is in the folder
+// `output` and would be written or removed.
 void RequireInputsKept(const std::string& output, const FileRule& is_changed,
                        const std::vector<std::string>& inputs);
 

@@ -16,7 +16,7 @@ void RequireNewFile(const std::string& path, bool force, const std::string& reme
   if (fs::is_directory(path)) throw InputError(path, "is a folder, must be a file");
   const fs::path folder = fs::absolute(path).parent_path();
   if (!fs::is_directory(folder)) throw InputError(path, "its folder does not exist");
-  // A device or a link would be replaced itself, not what stands behind it.
+  // A device or a link would itself be replaced, not its target.
   const fs::file_status there = fs::symlink_status(path);
   if (fs::exists(there) && !fs::is_regular_file(there)) {
     throw InputError(path, "is no regular file, and would be replaced by one; choose another name");

@@ -1,13 +1,13 @@
-// Single files that a command writes where its user says: checked before the work, not after.
+// Checks, before the work, of single files that a command writes at a given path.
 #pragma once
 
 #include <string>
 
 namespace depthgrid {
 
-// Throws InputError when `path` is a folder, a device or a link, or lies in no folder that can be
-// written, and when there is such a file already, unless `force`: it may be somebody's only copy.
-// `remedy`: what the user can do then.
+// Throws InputError when `path` is a folder, a device or a link, or is not in a writable folder,
+// and (unless `force`) when the file exists, because it may be the user's only copy. `remedy`:
+// advice for that case.
 void RequireNewFile(const std::string& path, bool force,
                     const std::string& remedy = "choose another name, or --force to replace it");
 

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Follows links, and drops a trailing slash, so that siblings are siblings.
+// Resolves links and removes a trailing slash, so that a sibling's path can be formed.
 fs::path Resolved(const std::string& path) {
   if (path.empty()) throw InputError("-o", "must name a folder");
   RequireReachable(path);
@@ -27,8 +27,8 @@ fs::path Resolved(const std::string& path) {
   return resolved.has_filename() ? resolved : resolved.parent_path();
 }
 
-// Whether nothing in it can be renamed to a place beside it: a mount point, such as a folder that a
-// container shares with its host, or the top of a file system's own division.
+// Whether files in it cannot be renamed to siblings of it: it is a mount point, such as a folder
+// shared with a container, or a subvolume.
 bool IsOnItsOwn(const fs::path& folder) {
   struct statx inside {};
   struct statx around {};
@@ -36,7 +36,7 @@ bool IsOnItsOwn(const fs::path& folder) {
     return ::statx(AT_FDCWD, path.c_str(), 0, STATX_BASIC_STATS, &known) == 0;
   };
   if (!about(folder, inside) || !about(folder.parent_path(), around)) return false;
-  // A folder of the same disk may be mounted as well.
+  // A folder of the same disk may also be a mount point (bind mount).
   if ((inside.stx_attributes & STATX_ATTR_MOUNT_ROOT) != 0) return true;
   return inside.stx_dev_major != around.stx_dev_major ||
          inside.stx_dev_minor != around.stx_dev_minor;
@@ -50,7 +50,7 @@ fs::path WorkOf(const fs::path& target) {
   return (inside ? target : around) / name;
 }
 
-// Apart from what a killed program left to work in.
+// Ignores the work folder of a killed program.
 bool IsEmpty(const fs::path& target, const fs::path& work) {
   return std::all_of(fs::directory_iterator(target), fs::directory_iterator(),
                      [&](const fs::directory_entry& entry) { return entry.path() == work; });
@@ -65,7 +65,7 @@ void RequireUsable(const fs::path& target, const fs::path& work, const std::stri
   }
 }
 
-// What it would be taken for is nothing that a killed program left.
+// Rejects files and links in the work folder's place, which no killed program left there.
 void RequireFolderOrNothing(const fs::path& work) {
   std::error_code error;
   const fs::file_status there = fs::symlink_status(work, error);
@@ -75,15 +75,15 @@ void RequireFolderOrNothing(const fs::path& work) {
                                fs::is_symlink(there) ? "link" : "file"));
 }
 
-// The topmost folder that create_directories(parent) is going to create.
+// The topmost folder that create_directories(parent) would create.
 fs::path FirstMissing(const fs::path& parent) {
   fs::path missing;
   for (fs::path p = parent; !p.empty() && !fs::exists(p); p = p.parent_path()) missing = p;
   return missing;
 }
 
-// Before anything is moved or removed: a file takes no folder's name, nor a folder a file's, nor
-// that of a link, behind which lies what is no part of the output.
+// Checked before anything is moved or removed: a file must not replace a folder, nor a folder a
+// file or a link, whose target is not part of the output.
 void RequireSameKinds(const fs::path& from, const fs::path& to) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const fs::path destination = to / entry.path().filename();
@@ -115,7 +115,7 @@ void RemoveContents(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) fs::remove_all(entry.path());
 }
 
-// Whether the open folder is still the one of this name.
+// Whether the open folder still has this name.
 bool IsNamed(int folder, const fs::path& name) {
   struct stat open_one {};
   struct stat named {};
@@ -125,7 +125,7 @@ bool IsNamed(int folder, const fs::path& name) {
 
 }  // namespace
 
-// An empty one would be replaced, and the shell be left in a folder that is no more.
+// If it is empty it would be replaced, and the shell would be left in a removed folder.
 void RequireNotCurrent(const std::string& path) {
   const fs::path target = Resolved(path);
   std::error_code gone;
@@ -140,7 +140,7 @@ void RequireNotCurrent(const std::string& path) {
 
 void RequireReachable(const std::string& path) {
   if (path.empty()) return;
-  // A link's name with a slash behind it is that of what it links to.
+  // With a trailing slash a link's name means its target.
   const fs::path given = path;
   const fs::path plain = given.has_filename() ? given : given.parent_path();
   std::error_code error;
@@ -171,12 +171,13 @@ OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superse
   try {
     fs::create_directories(parent);
     Take(path);
-    RemoveContents(work_);  // of a program that was killed
+    RemoveContents(work_);  // left by a killed program
   } catch (const fs::filesystem_error& error) {
     throw InputError(path, "cannot be created: " + error.code().message());
   }
   try {
-    RequireUsable(target_, work_, path, force);  // another program may have written it meanwhile
+    RequireUsable(target_, work_, path,
+                  force);  // again: another program may have written it meanwhile
   } catch (...) {
     fs::remove_all(work_);
     ::close(lock_);
@@ -185,13 +186,13 @@ OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superse
   clean_.emplace([this] { Clean(); });
 }
 
-// One program at a time has the folder of that name open and locked.
+// Creates, opens and locks work_, for one program at a time.
 void OutputFolder::Take(const std::string& shown) {
   while (lock_ < 0) {
     fs::create_directory(work_);
     lock_ = ::open(work_.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (lock_ < 0) {
-      if (errno == ENOENT) continue;  // its owner has just finished
+      if (errno == ENOENT) continue;  // its owner has just removed it
       throw fs::filesystem_error("open", work_, std::error_code(errno, std::generic_category()));
     }
     if (::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
@@ -212,12 +213,12 @@ OutputFolder::~OutputFolder() {
 void OutputFolder::Clean() const {
   if (kept_) return;
   std::error_code ignored;
-  // Once it took its place, the name may be another program's. When the program ends at once, its
-  // other threads may be writing still.
+  // After the commit, another program may use the name. On an immediate exit other threads may
+  // still be writing, so removal is retried.
   constexpr int kMostTries = 100;
   for (int i = 0; i < kMostTries && IsNamed(lock_, work_); ++i) fs::remove_all(work_, ignored);
   if (!committed_ && !first_created_parent_.empty()) {
-    // Only what is empty: another program may have put something there meanwhile.
+    // Only empty ones: another program may have written there meanwhile.
     for (fs::path p = target_.parent_path(); fs::remove(p, ignored); p = p.parent_path()) {
       if (p == first_created_parent_) break;
     }
@@ -239,7 +240,7 @@ void OutputFolder::RemoveSuperseded() const {
   }
   for (const fs::path& file : superseded) {
     fs::remove(file);
-    std::error_code not_empty;  // a folder of such files goes with the last of them
+    std::error_code not_empty;  // parent folders are removed once they are empty
     fs::path parent = file.parent_path();
     while (parent != target_ && fs::remove(parent, not_empty)) parent = parent.parent_path();
   }

@@ -1,7 +1,7 @@
-// The folder a command writes. Everything goes to a sibling first and takes its place when the
-// command is done, so that an error leaves nothing behind, and nobody reads half a result. Of a
-// mount point, whose siblings are on another file system, or of a folder beside which this user may
-// not write, to a folder inside it.
+// The output folder of a command. Files are written to a sibling folder first, which replaces the
+// output folder when the command is done, so that an error leaves nothing behind and nobody reads a
+// partial result. For a mount point, whose siblings are on another file system, or a folder whose
+// parent is not writable, to a folder inside it.
 #pragma once
 
 #include <filesystem>
@@ -13,21 +13,22 @@
 
 namespace depthgrid {
 
-// Throws InputError when `path` is a link to nothing, or lies or is where this user may not write.
-// To be asked first: whoever looks into such a folder fails on a file that no user has named.
+// Throws InputError when `path` is a dangling link, or it or its parent is inaccessible to this
+// user. Call it first: other accesses to such a folder fail with the name of a file that the user
+// did not give.
 void RequireReachable(const std::string& path);
-// Throws InputError when `path` is the current folder or one around it, which are not looked into
-// either: they may be as large as a disk.
+// Throws InputError when `path` is the current folder or a parent of it. These are not searched for
+// files either, because they may be as large as a disk.
 void RequireNotCurrent(const std::string& path);
 
 class OutputFolder {
  public:
-  // Throws InputError for what RequireReachable() refuses, and when `path` is a file, a folder that
-  // is not empty unless `force`, the current folder or one around it, or one that another program
-  // is about to write. `superseded`: which files there an earlier result left; those go that are
-  // not written again, so that no two results are mixed.
+  // Throws InputError for what RequireReachable() rejects, and when `path` is a file, a folder that
+  // is not empty (unless `force`), the current folder or a parent of it, or a folder that another
+  // program is writing. `superseded`: files of an earlier result; those that are not written again
+  // are removed, so that results are not mixed.
   OutputFolder(const std::string& path, bool force, FileRule superseded = {});
-  // Removes everything again unless Commit() was called.
+  // Removes all written files unless Commit() was called.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -36,11 +37,10 @@ class OutputFolder {
   const std::filesystem::path& work() const { return work_; }
   std::string File(const std::string& name) const { return (work_ / name).string(); }
 
-  // Puts the written files in place. In a folder that has files already (with `force` only, also
-  // where they came there meanwhile), files of the same name are replaced, superseded ones go and
-  // all others stay: what a user put there is never deleted. Throws std::runtime_error when that
-  // cannot be done; the files that are not in place then stay where they are, and the message says
-  // where.
+  // Moves the written files into place. In a folder that already has files (only with `force`, even
+  // if they appeared meanwhile), files of the same name are replaced, superseded ones are removed
+  // and all others remain: a user's own files are never deleted. Throws std::runtime_error on
+  // failure; files not yet in place then remain where they are, and the message says where.
   void Commit();
 
  private:
@@ -53,9 +53,9 @@ class OutputFolder {
   std::filesystem::path work_;
   bool force_;
   std::filesystem::path first_created_parent_;  // removed again on failure; empty if none
-  int lock_ = -1;  // the open work_, locked: whoever dies leaves nothing locked
+  int lock_ = -1;  // descriptor of work_, locked; the lock ends with the process
   bool committed_ = false;
-  bool kept_ = false;  // what could not be committed is not removed
+  bool kept_ = false;  // files that could not be committed are not removed
   FileRule superseded_;
   std::optional<EndTask> clean_;
 };

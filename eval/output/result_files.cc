@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 using Names = std::set<std::string>;
 
-// depth/ or rgb/ and the stamp, with six decimals.
+// Images have the path depth/ or rgb/ and the stamp with six decimals.
 bool IsRenderedImage(const fs::path& relative) {
   const fs::path folder = relative.parent_path();
   if ((folder != "depth" && folder != "rgb") || relative.extension() != ".png") return false;
@@ -58,7 +58,7 @@ bool IsMapFile(const fs::path& relative) {
   return names.contains(relative.string()) || IsSamplePicture(relative, "_depth.png");
 }
 
-// With what needs the truth or SLAM's own account, and a study's input map.
+// Includes files that need ground truth or SLAM's events, and a study's input map.
 bool IsRunFile(const fs::path& relative) {
   static const Names names = {"truth_map.yaml",     "truth_map.pgm",        "observable.yaml",
                               "observable.pgm",     "trajectory_truth.txt", "loops.csv",
@@ -95,7 +95,7 @@ bool IsNoFile(const fs::path&) { return false; }
 
 bool IsRunOrMap(ResultKind kind) { return kind == ResultKind::kRun || kind == ResultKind::kMap; }
 
-// Whether a command wrote the file: those that runs, maps and renders leave say with what.
+// Whether a command wrote the file: those of runs, maps and renders contain provenance.
 bool HasProvenance(const fs::path& yaml) {
   try {
     return fs::is_regular_file(yaml) && Config::FromFile(yaml.string()).Has("provenance");
@@ -104,14 +104,14 @@ bool HasProvenance(const fs::path& yaml) {
   }
 }
 
-// Of the run or map there, if there is one.
+// The files of the run or map in the folder, if there is one.
 FileRule FilesOfRun(const fs::path& folder) {
   const fs::path run_yaml = folder / "run.yaml";
   if (!HasProvenance(run_yaml)) return IsNoFile;
   return Config::FromFile(run_yaml.string()).Has("scene") ? IsRunFile : IsMapFile;
 }
 
-// Those of the study there, none when there is no such.
+// The cases of the study in the folder; empty if there is none.
 Names CasesIn(const fs::path& folder) {
   if (!fs::exists(folder / "study.yaml") || !fs::exists(folder / "overrides.txt")) return {};
   try {
@@ -124,7 +124,7 @@ Names CasesIn(const fs::path& folder) {
   }
 }
 
-// The runs of its cases, of which a new study may have others.
+// The files of the cases of the study in the folder; a new study may have other cases.
 FileRule FilesOfCases(const fs::path& folder) {
   std::map<std::string, FileRule> cases;
   for (const std::string& name : CasesIn(folder)) cases[name] = FilesOfRun(folder / name);
@@ -140,7 +140,8 @@ bool AllExist(const fs::path& folder, const Names& names) {
                      [&](const std::string& name) { return fs::exists(folder / name); });
 }
 
-// Of all results there, each by files that no user gives by chance.
+// The files of all results in the folder, each recognised by files that a user would not have by
+// chance.
 FileRule FilesOfResultsIn(const fs::path& folder) {
   std::vector<FileRule> rules = {FilesOfRun(folder), FilesOfCases(folder)};
   if (HasProvenance(folder / "render.yaml")) rules.emplace_back(IsRenderFile);
@@ -157,7 +158,7 @@ FileRule FilesOfResultsIn(const fs::path& folder) {
   };
 }
 
-// Those that a result of this kind makes.
+// The folders that a result of this kind makes.
 Names FoldersOf(ResultKind kind, const std::vector<std::string>& cases) {
   if (IsRunOrMap(kind)) return {"frames"};
   if (kind == ResultKind::kRender) return {"depth", "rgb"};
@@ -166,8 +167,8 @@ Names FoldersOf(ResultKind kind, const std::vector<std::string>& cases) {
   return folders;
 }
 
-// A run and a rendered sequence have a true map each, of one name: what is scored against the one
-// that is left would be scored in the wrong room.
+// A run and a rendered sequence both have a true map, of the same name; results of the other would
+// be scored against the wrong room.
 void RequireNoOtherTruth(const fs::path& folder, ResultKind kind) {
   const bool rendered = fs::exists(folder / "render.yaml");
   const bool has_run = !rendered && fs::exists(folder / "trajectory_truth.txt");
@@ -217,7 +218,7 @@ FileRule FilesLeftBy(ResultKind kind, const std::string& folder) {
   if (kind == ResultKind::kStudy) return FilesOfCases(place);
   if (!IsRunOrMap(kind)) return IsNoFile;
   if (!fs::exists(place / "run.yaml")) return IsNoFile;
-  // Names that several commands give belong to the one that must have written them.
+  // Names that several commands use are attributed to the one that must have written them.
   const bool rendered = fs::exists(place / "render.yaml");
   const bool has_slam = fs::exists(place / "slam.yaml");
   return [of_run = FilesOfRun(place), rendered, has_slam](const fs::path& relative) {
@@ -241,7 +242,7 @@ void RequireOwnFiles(const std::string& folder, ResultKind kind,
   const FileRule own = FilesOfResultsIn(place);
   Names parts = FoldersOf(kind, cases);
   parts.insert("");
-  std::set<fs::path> others;  // the same one is named everywhere
+  std::set<fs::path> others;  // so that messages do not depend on the file system's order
   for (const std::string& part : parts) {
     std::error_code error;  // most folders have no frames
     for (const auto& entry : fs::directory_iterator(place / part, error)) {

@@ -37,7 +37,7 @@ void WriteTrajectories(const OutputFolder& folder, const RunRecord& record) {
   }
 }
 
-// In the map's frame, wherever SLAM's own lies in a finished map that the run went on in.
+// SLAM's trajectory for display: in a run with a prior map, moved into the map's frame.
 Trajectory ShownSlam(const MappingRun& run) {
   const auto& mapped = run.result.mapped;
   const bool in_prior_map = !mapped.empty() && mapped.front().frame < 0;
@@ -126,8 +126,8 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   WriteDepthPictures(folder.work().string(), *record.mapping, record.scan);
   WriteFile(folder.File("timing.csv"), TimingCsv(*record.mapping));
   WriteRunReport(folder.work().string(),
-                 {folder.work().string()});  // of what the folder holds by now
-  // Last, as it says how much memory all of it took.
+                 {folder.work().string()});  // from the files written so far
+  // Last, because it includes the peak memory.
   WriteFile(folder.File("timing.json"),
             TimingJson(*record.mapping, record.wall_s_total, record.cpu_s_total));
 }

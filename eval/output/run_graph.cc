@@ -3,10 +3,10 @@
 namespace depthgrid {
 namespace {
 
-// Keeps the information finite where the poses are SLAM's own.
+// Keeps the information finite where the final poses are SLAM's own.
 const Eigen::Vector3d kLeastSigma(1e-4, 1e-4, 1e-4);
 
-// Motions whose errors are of one size.
+// Motions with a common sigma.
 struct Motions {
   std::vector<PlanarGraph::Edge> edges;
   Eigen::Vector3d squares = Eigen::Vector3d::Zero();

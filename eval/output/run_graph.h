@@ -1,4 +1,4 @@
-// The pose graph of a run, as other programs read it.
+// The pose graph of a run, for other programs.
 #pragma once
 
 #include "eval/run/mapping_run.h"
@@ -7,8 +7,8 @@
 namespace depthgrid {
 
 // A vertex for each mapped frame at its final pose (the id is the input frame's number), an edge
-// for each motion that SLAM saw between two of them, and one for each loop that was taken. The
-// sigmas of the motions are how far they are from the final poses, root mean square over the run.
+// for each of SLAM's motions between two of them, and one for each accepted loop. The sigmas of the
+// motions are their RMS differences from the final poses over the run.
 PlanarGraph GraphOf(const MappingRun& run);
 
 }  // namespace depthgrid

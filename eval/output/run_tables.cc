@@ -48,7 +48,7 @@ std::string MotionCells(const FrameReport& report) {
   return fmt::format("{},{}", report.motion_from, CovarianceCells(report.motion_covariance));
 }
 
-// Of a frame without a pose there may be no scan, and then there is no number.
+// The number of beams; empty for a frame without a pose, which may have no scan.
 std::string BeamsCell(const FrameReport& report) {
   return report.slam_from_camera || report.beams > 0 ? fmt::format("{}", report.beams) : "";
 }

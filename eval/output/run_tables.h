@@ -1,4 +1,3 @@
-// The tables of a run's folder.
 #pragma once
 
 #include <string>
@@ -8,14 +7,14 @@
 
 namespace depthgrid {
 
-// frames.csv: one row an input frame, what the mapper knew and decided at the time. `truth` adds
-// errors of the SLAM pose and of the online estimate (no alignment); empty cells where nothing is
-// known.
+// frames.csv: one row per input frame, with what the mapper knew and decided then. `truth` (may be
+// null) adds errors of SLAM's pose and the online estimate, without alignment. Unknown cells are
+// empty.
 std::string FramesCsv(const MappingRun& run, const Trajectory* truth);
 
-// timing.csv: CPU microseconds of each stage, one row a frame.
+// timing.csv: CPU microseconds of each stage, one row per frame.
 std::string TimingCsv(const MappingRun& run);
-// timing.json: totals, and the mapper's time a frame.
+// timing.json: totals, and the mapper's time per frame.
 std::string TimingJson(const MappingRun& run, double wall_s_total, double cpu_s_total);
 
 }  // namespace depthgrid

@@ -1,4 +1,4 @@
-// A 5x7 dot-matrix font, the shapes of character displays.
+// A 5x7 dot-matrix font, as on character displays.
 #pragma once
 
 #include <array>
@@ -9,7 +9,8 @@ namespace depthgrid {
 constexpr int kGlyphWidthPx = 5;
 constexpr int kGlyphHeightPx = 7;
 
-// Columns from left to right; bit 0 is the top row. '?' stands in for what is not printable ASCII.
+// Columns from left to right; bit 0 is the top row. '?' replaces characters that are not printable
+// ASCII.
 std::array<std::uint8_t, kGlyphWidthPx> GlyphOf(char character);
 
 }  // namespace depthgrid

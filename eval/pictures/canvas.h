@@ -1,4 +1,4 @@
-// Pictures drawn by the program itself: the map with its trajectories, and the report's images.
+// Draws into an image, for maps with trajectories and the report's pictures.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,7 @@ inline void SetPixel(RgbImage& image, int u_px, int v_px, Colour colour) {
   pixel[2] = colour.blue;
 }
 
-// Coordinates are pixels, (0, 0) the centre of the top left one. What lies outside is clipped.
+// Coordinates are pixels, (0, 0) the centre of the top left one. Parts outside are clipped.
 class Canvas {
  public:
   Canvas(int width_px, int height_px, Colour background);

@@ -31,7 +31,8 @@ Colour DepthColour(double nearness) {
   return {mix(a.red, b.red), mix(a.green, b.green), mix(a.blue, b.blue)};
 }
 
-// The pixel of a point given ahead, to the left and above the camera, level; nothing behind it.
+// Projects points given as forward, left and up from the camera, in level axes; empty for points
+// behind it.
 class LevelProjection {
  public:
   LevelProjection(const PinholeCamera& camera, const CameraStand& stand)
@@ -49,7 +50,7 @@ class LevelProjection {
   Eigen::Quaterniond camera_from_level_;
 };
 
-// In short pieces: a part of the stretch may lie behind the camera.
+// Drawn in short pieces, because part of the stretch may be behind the camera.
 void DrawClearStretch(Canvas& canvas, const LevelProjection& projection, const Beam& beam,
                       double floor_below_camera_m) {
   constexpr int kPieces = 24;

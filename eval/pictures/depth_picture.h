@@ -1,4 +1,4 @@
-// A depth frame as a picture, with the scan that was made of it drawn over it.
+// Pictures of depth frames, with the scan made from them.
 #pragma once
 
 #include "mapper/core/camera.h"
@@ -13,8 +13,7 @@ namespace depthgrid {
 // Near is bright, far dark, invalid pixels are grey.
 RgbImage DepthPicture(const DepthImage& depth, double max_depth_m);
 
-// The same with the scan: the pixel of each hit, and on the floor the stretch of some bearings that
-// was found free.
+// The same with the scan: the pixel of each hit and, for some beams, the free stretch on the floor.
 RgbImage DepthPictureWithBeams(const DepthImage& depth, const PinholeCamera& camera,
                                const CameraStand& stand, const Scan& scan,
                                const ScanOptions& options);

@@ -8,7 +8,7 @@
 namespace depthgrid {
 namespace {
 
-constexpr Colour kUnknownCell = {205, 205, 205};  // as Nav2's tools show it
+constexpr Colour kUnknownCell = {205, 205, 205};  // as in Nav2's tools
 constexpr Colour kFreeCell = {254, 254, 254};
 constexpr Colour kOccupiedCell = {0, 0, 0};
 constexpr Colour kLatticeLine = {170, 190, 215};
@@ -58,7 +58,7 @@ RgbImage Enlarged(const RgbImage& image, int factor) {
   return large;
 }
 
-// Wide enough to look at, unless that makes it too tall.
+// Pixels per cell: enough for a sufficient width, unless the picture becomes too tall.
 int Enlargement(const RgbImage& cells) {
   constexpr int kLeastWidthPx = 900;
   constexpr int kMostHeightPx = 4000;
@@ -67,7 +67,8 @@ int Enlargement(const RgbImage& cells) {
   return std::max(1, std::min(wanted, kMostHeightPx / std::max(cells.height_px, 1)));
 }
 
-// 1, 2 or 5 times a power of ten, from 1 m: the least step whose lines stand well apart.
+// 1, 2 or 5 times a power of ten, from 1 m: the smallest step with sufficient distance between
+// lines.
 double LatticeSpacingM(double px_per_m) {
   constexpr double kLeastPx = 60.0;
   for (double decade_m = 1.0;; decade_m *= 10.0) {
@@ -137,7 +138,7 @@ RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
   const int factor = Enlargement(cells);
   const RgbImage large = Enlarged(cells, factor);
   const double px_per_m = factor / geometry.resolution_m;
-  constexpr int kLeastLinePx = 1200;  // of the legend, before it takes another
+  constexpr int kLeastLinePx = 1200;  // of the legend, before a line break
   const Legend legend(geometry.width_cells * geometry.resolution_m, px_per_m, paths, dot,
                       std::max(large.width_px, kLeastLinePx));
   Canvas canvas(std::max(large.width_px, legend.WidthPx()), large.height_px + legend.HeightPx(),
@@ -193,7 +194,8 @@ GridGeometry ShownPart(const StateMap& map, const std::vector<Path>& paths) {
   const auto margin_cells = static_cast<int>(std::lround(kMarginM / map.geometry.resolution_m));
   GridGeometry known = KnownPart(map, margin_cells);
   GridGeometry part = known;
-  // Each by its distance from what is known, or from the first: no stray path draws another one in.
+  // Each path is extended from the known part (or the first path) independently, so that an
+  // outlying path does not bring in another one.
   for (const Path& path : paths) {
     const GridGeometry with_path = WithPath(known, path.poses, margin_cells);
     if (known.size() == 0) known = with_path;

@@ -1,4 +1,4 @@
-// Maps as pictures a person reads: states in colours, true against estimated, and the map with its
+// Pictures of maps: states as colours, the estimate compared with the truth, and the map with
 // trajectories and a scale bar.
 #pragma once
 
@@ -12,34 +12,34 @@
 
 namespace depthgrid {
 
-// One pixel a cell, north (largest y) up, over the given rectangle.
+// One pixel per cell of the given rectangle, largest y at the top.
 RgbImage PictureOf(const OccupancyMap& map, const GridGeometry& geometry);
 RgbImage PictureOf(const StateMap& map, const GridGeometry& geometry);
 RgbImage PictureOf(const CellSet& cells, const GridGeometry& geometry);
-// Where the estimate agrees with the truth about walls, where it misses one and where it invents
-// one; cells outside `observable` are paler.
+// Shows correct, missed and invented walls in different colours; cells outside `observable` are
+// paler.
 RgbImage DifferencePicture(const StateMap& truth, const StateMap& estimate,
                            const std::optional<CellSet>& observable, const GridGeometry& geometry);
 
-// Lines at whole metres of the map's frame (of a large map at whole tens and so on), numbered along
-// the top and the left edge.
+// Lines at whole metres of the map's frame (for large maps at tens of metres and so on), numbered
+// along the top and the left edge.
 enum class Lattice { kNone, kMetres };
 
-// The picture (one pixel a cell) enlarged, with paths, and below it a scale bar and a legend of as
-// many lines as it takes.
+// The picture (one pixel per cell) enlarged, with paths, and below it a scale bar and a legend.
 RgbImage AnnotatedMap(const RgbImage& cells, const GridGeometry& geometry,
                       const std::vector<Path>& paths, PathDot dot = PathDot::kStart,
                       Lattice lattice = Lattice::kNone);
 
-// The part of the map that holds anything but unknown cells, with a margin; empty if nothing does.
+// The rectangle of the known cells, with a margin; empty if there are none.
 GridGeometry KnownPart(const StateMap& map, int margin_cells);
-// `part` and the path with that margin: a camera may stand where it never saw the floor. Poses more
-// than a camera's range away from it, or from the path's start if it is empty, are left out, so
-// that no stray one makes a huge picture.
+// Extends `part` to the path with that margin, because a camera may be where it never saw the
+// floor. Poses farther than a camera's range from `part` (from the path's start if it is empty) are
+// left out, so that an outlier does not make the picture huge.
 GridGeometry WithPath(GridGeometry part, const Trajectory& path, int margin_cells);
-// All of the map in place of an empty part: a picture has a pixel at least.
+// The whole map if `part` is empty, so that a picture has at least one pixel.
 GridGeometry OrAllOf(const StateMap& map, const GridGeometry& part);
-// What a picture of the map with these paths shows: both, and half a metre around.
+// The rectangle that a picture of the map with these paths shows: both, and a margin of half a
+// metre.
 GridGeometry ShownPart(const StateMap& map, const std::vector<Path>& paths);
 
 namespace palette {

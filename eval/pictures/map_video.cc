@@ -8,9 +8,9 @@ namespace depthgrid {
 namespace {
 
 constexpr int kFramesPerS = 30;
-// 20 s: longer runs go faster.
+// 20 s; longer runs are shown faster.
 constexpr std::size_t kMaxFrames = 600;
-// The finished map stays in the picture this long.
+// Duration of the finished map at the end.
 constexpr int kLastFrames = 2 * kFramesPerS;
 
 }  // namespace
@@ -30,7 +30,7 @@ void WriteMapVideo(const std::string& path, const MappingRun& run, const GridOpt
   const std::size_t every = run.reports.size() / kMaxFrames + 1;
   auto next = mapped.begin();
   for (std::size_t i = 0; i < run.reports.size(); ++i) {
-    // With the first frame also what the run went on in: its frames have numbers below 0.
+    // The first frame also adds the prior map, whose frames have negative numbers.
     for (; next != mapped.end() && next->frame <= run.reports[i].index; ++next) {
       drawing.Add(next->frame, *next->obstacles, next->map_from_base);
     }

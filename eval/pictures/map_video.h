@@ -1,5 +1,5 @@
 // A video of the map growing: the scans at their final poses one after the other, and the path. A
-// finished map that the run went on in is there from the beginning.
+// prior map is shown from the beginning.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace depthgrid {
 
-// Throws InputError before anything else when RequireVideo does.
+// First throws InputError as RequireVideo does.
 void WriteMapVideo(const std::string& path, const MappingRun& run, const GridOptions& options);
 
 }  // namespace depthgrid

@@ -23,9 +23,9 @@ constexpr int kMarginPx = 12;
 constexpr double kPathWidthPx = 2.5;
 constexpr double kBeneathWidthPx = 7.0;
 constexpr double kDotRadiusPx = 5.0;
-constexpr double kDotStepPx = 12.0;  // in the legend, from one to the next
+constexpr double kDotStepPx = 12.0;  // distance between dots in the legend
 
-// Of a dashed line.
+// Lengths of a dashed line's parts.
 constexpr double kDashPx = 14.0;
 constexpr double kDashDotPx = 1.0;
 constexpr double kDashGapPx = 8.0;
@@ -40,7 +40,7 @@ Colour ShownColour(const Path& path) {
 
 double DashPeriodPx(int dots) { return kDashPx + kDashGapPx + dots * (kDashDotPx + kDashGapPx); }
 
-// How long the stretch, a stroke or a gap, is from here on that `along_px` of a dashed line is in.
+// The remaining length of the stroke or gap at `along_px` of a dashed line.
 struct DashStretch {
   bool is_drawn;
   double left_px;
@@ -55,11 +55,11 @@ DashStretch DashAt(double along_px, int dots) {
     if (in_period_px < kDashGapPx) return {false, kDashGapPx - in_period_px};
     in_period_px -= kDashGapPx;
   }
-  return {true, kDashPx};  // what rounding left of the period
+  return {true, kDashPx};  // for rounding errors at the end of the period
 }
 
 void DrawDashed(const std::vector<Eigen::Vector2d>& points, const Path& path, Canvas& canvas) {
-  constexpr double kLeastStepPx = 1e-6;  // so that rounding stops nothing
+  constexpr double kLeastStepPx = 1e-6;  // so that rounding cannot stop the loop
   double along_px = 0.0;
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d& from = points[i - 1];
@@ -84,7 +84,7 @@ int MiddleOf(int text_top) { return text_top + Canvas::TextHeight(kTextScale) / 
 
 bool IsDashed(const Path& path) { return path.dots >= 0; }
 
-// Of a legend: of a dashed line at least one period.
+// Length of a path's sample in the legend; for a dashed line at least one period.
 int SamplePx(const Path& path) {
   if (!IsDashed(path)) return 2 * kMarginPx;
   return std::max(2 * kMarginPx, static_cast<int>(DashPeriodPx(path.dots)));
@@ -154,14 +154,14 @@ void Legend::Draw(int row_px, Canvas& canvas) const {
   if (!paths_.empty()) DrawDots(below(items_.back()), canvas);
 }
 
-// One of each colour, those of the lines that are not dashed, and a gap behind them.
+// Width of the dots, one for each line that is not dashed, and a gap after them.
 int Legend::DotsPx() const {
   const auto dashed = std::count_if(paths_.begin(), paths_.end(), IsDashed);
   const auto dots = static_cast<double>(paths_.size()) - static_cast<double>(dashed);
   return static_cast<int>(kDotStepPx * dots) + kMarginPx;
 }
 
-// Behind the item before, or on a line of its own below it.
+// Places the item after the previous one, or on a new line.
 void Legend::Place(int item_px, int most_px) {
   if (!items_.empty() && left_px_ + item_px > most_px) {
     left_px_ = kMarginPx;

@@ -1,4 +1,4 @@
-// Paths in a picture of a map, and the legend below it that names them.
+// Draws paths in a picture of a map, and the legend below it.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,12 +10,12 @@
 
 namespace depthgrid {
 
-constexpr int kTextScale = 2;  // of all text in such a picture
+constexpr int kTextScale = 2;  // for all text in such a picture
 constexpr Colour kInk = {30, 30, 30};
 
 Colour Paler(Colour colour);
 
-// A path that another one may lie upon is wide and pale, so that it is seen on both sides of it.
+// kBeneath is wide and pale, so that the path is visible on both sides of another one on top of it.
 enum class PathStyle { kLine, kBeneath };
 
 struct Path {
@@ -23,28 +23,28 @@ struct Path {
   Colour colour;
   Trajectory poses;
   PathStyle style = PathStyle::kLine;
-  // Of a dashed line, behind each of its dashes; -1: it is not dashed.
+  // Number of dots after each dash of a dashed line; -1: not dashed.
   int dots = -1;
 };
 
-// Which end of each path has a dot.
+// Which end of each path is marked by a dot.
 enum class PathDot { kStart, kNow };
 
-// Over a picture of so many rows, whose lower left corner is the origin. The centre of cell (i,
-// j)'s picture is that of its enlarged square.
+// Draws into a picture of `rows_px` rows, whose lower left corner is at `origin_m`. The centre of a
+// cell is the centre of its enlarged square.
 void DrawPath(const Path& path, PathDot dot, const Eigen::Vector2d& origin_m, double px_per_m,
               int rows_px, Canvas& canvas);
 
-// A scale bar, the paths' names and what their dots are, in as many lines as they take.
+// A scale bar, the paths' names and the meaning of the dots, in as many lines as needed.
 class Legend {
  public:
-  // Of a picture so wide. `paths` must outlive it; `most_px`: the length of a line, unless one item
-  // alone is longer.
+  // `width_m`: of the picture. `paths` must outlive it. `most_px`: length of a line, unless a
+  // single item is longer.
   Legend(double width_m, double px_per_m, const std::vector<Path>& paths, PathDot dot, int most_px);
 
   int WidthPx() const { return width_px_; }
   int HeightPx() const;
-  // Below this row.
+  // Draws below this row.
   void Draw(int row_px, Canvas& canvas) const;
 
  private:
@@ -63,7 +63,7 @@ class Legend {
   int bar_px_;
   const std::vector<Path>& paths_;
   std::vector<Item> items_;  // the bar, the paths, the dots
-  int left_px_ = 0;          // where the next one goes
+  int left_px_ = 0;          // position of the next item
   int top_px_ = 0;
   int width_px_ = 0;
 };

@@ -1,12 +1,12 @@
-// SLAM's poses shown in a finished map that a run went on in.
+// SLAM's poses for display in a prior map.
 #pragma once
 
 #include "mapper/core/trajectory.h"
 
 namespace depthgrid {
 
-// SLAM's frame lies anywhere in that map: its poses are laid where the estimate has the first of
-// those that both know, by one planar motion. With no such pose they stay as they are.
+// SLAM's frame is arbitrary relative to that map. Moves its poses by one planar motion so that the
+// first pose that both have coincides with the estimate's. Without such a pose they are unchanged.
 Trajectory PlacedWhereItBegins(Trajectory slam, const Trajectory& estimate);
 
 }  // namespace depthgrid

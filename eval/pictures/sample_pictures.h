@@ -11,7 +11,7 @@ namespace depthgrid {
 
 void WriteDepthPictures(const std::string& folder, const MappingRun& run,
                         const ScanOptions& options);
-// Beside them. Throws std::runtime_error when colour cannot be drawn.
+// Writes the colour pictures beside them. Throws std::runtime_error when colour cannot be rendered.
 void WriteColourPictures(const std::string& folder, const MappingRun& run, const World& world);
 
 }  // namespace depthgrid

@@ -8,11 +8,11 @@
 namespace depthgrid {
 namespace {
 
-// Of the picture, for the lattice's numbers.
+// Margin as a share of the picture, for the numbers of the grid lines.
 constexpr double kMarginShare = 0.06;
 
 TruthGridOptions GridFor(const TriangleMesh& mesh) {
-  constexpr double kMostCells = 2000.0;  // a side
+  constexpr double kMostCells = 2000.0;  // per side
   TruthGridOptions grid;
   const double longer_m = BoundsOf(mesh).sizes().head<2>().maxCoeff();
   grid.resolution_m *= std::max(1.0, std::ceil(longer_m / grid.resolution_m / kMostCells));

@@ -1,4 +1,4 @@
-// A scene from above, for whoever writes paths through it.
+// A plan of a scene, for writing paths.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace depthgrid {
 
-// What stands in the truth map's default band, with these paths and lines at whole metres. Cells
-// are those of maps, larger where the scene is so large that nobody could look at the picture.
+// The geometry in the truth map's default height band, with these paths and lines at whole metres.
+// Cells have the size of a map's, or are larger if the picture would be too large.
 RgbImage PlanOf(const Scene& scene, const std::vector<Path>& paths);
 
 }  // namespace depthgrid

@@ -49,14 +49,14 @@ std::vector<std::string> CommandFor(const std::string& path, int width_px, int h
       "-threads 1 -fflags +bitexact -flags:v +bitexact -movflags +faststart -f mp4",
       width_px, height_px, frames_per_s, kQuality));
   std::vector<std::string> command(std::istream_iterator<std::string>(words), {});
-  // Whatever it begins with: "-", or what ffmpeg takes for a protocol.
+  // The prefix protects names that begin with "-" or look like a protocol.
   command.push_back("file:" + path);
   return command;
 }
 
-// Starts ffmpeg, which reads from a socket, to whose other end nothing is written with a signal
-// when ffmpeg is gone: of a pipe, SIGPIPE would have to be ignored by the whole program. What it
-// says goes to the file `errors`.
+// Starts ffmpeg, which reads from a socket: if ffmpeg has ended, writing to a socket can fail
+// without a signal, whereas for a pipe the whole program would have to ignore SIGPIPE. ffmpeg's
+// messages go to the file `errors`.
 int Start(const std::vector<std::string>& command, int errors, int& pipe_end) {
   int ends[2];
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
@@ -82,14 +82,14 @@ int Start(const std::vector<std::string>& command, int errors, int& pipe_end) {
   return process;
 }
 
-// Whether its boxes (ISO/IEC 14496-12, 4.2) fill the file, the one that says where frames lie among
-// them. ffmpeg says that all is well, exit code 0, when the disk is full as it writes that one.
+// Whether the boxes (ISO/IEC 14496-12, 4.2) fill the file and include the index of frames. ffmpeg
+// ends with exit code 0 even if the disk is full when it writes the index.
 bool IsWholeMp4(const std::string& path) {
   std::error_code error;
   const std::uint64_t end = fs::file_size(path, error);
   if (error) return false;
   std::ifstream file(path, std::ios::binary);
-  const auto number = [&file](int bytes) {  // the highest byte first
+  const auto number = [&file](int bytes) {  // big-endian
     std::uint64_t value = 0;
     for (int i = 0; i < bytes; ++i) value = value << 8U | static_cast<unsigned char>(file.get());
     return value;
@@ -139,7 +139,7 @@ VideoWriter::~VideoWriter() {
   if (errors_ >= 0) ::close(errors_);
 }
 
-// So that it neither goes on without us nor complains of a file that is gone.
+// Ends ffmpeg, so that it neither continues nor complains of a removed file.
 void VideoWriter::Abandon() {
   const int process = process_;
   if (process > 0) ::kill(process, SIGKILL);
@@ -168,7 +168,7 @@ void VideoWriter::Close() {
   process_ = -1;
 }
 
-// The first line that ffmpeg said, in brackets; empty where it said nothing.
+// ffmpeg's first message, in brackets; empty if there is none.
 std::string VideoWriter::Complaint() const {
   std::array<char, 400> text{};
   const auto size = errors_ < 0 ? 0 : ::pread(errors_, text.data(), text.size(), 0);

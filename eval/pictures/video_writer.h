@@ -9,23 +9,23 @@
 
 namespace depthgrid {
 
-// Throws InputError for a name that is no video's or when there is no ffmpeg to write it: said
-// before hours of mapping, not after.
+// Throws InputError for a name that is not a video's or without ffmpeg; called before hours of
+// mapping.
 void RequireVideo(const std::string& path);
 
-// Frames in, a file at the end. The same frames give the same bytes with the same ffmpeg.
+// Encodes frames to a file. The same frames give the same bytes with the same ffmpeg.
 class VideoWriter {
  public:
   // All frames have this size. Throws std::runtime_error when ffmpeg cannot be started.
   VideoWriter(std::string path, int width_px, int height_px, int frames_per_s);
-  // Without Finish() nothing is left behind.
+  // Removes all files unless Finish() was called.
   ~VideoWriter();
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
 
   void Add(const RgbImage& frame);
   // Throws std::runtime_error when ffmpeg failed or the disk was full; an earlier file of that name
-  // is as it was then.
+  // is then unchanged.
   void Finish();
 
  private:
@@ -38,8 +38,8 @@ class VideoWriter {
   int width_px_;
   int height_px_;
   int pipe_ = -1;
-  int errors_ = -1;                // what ffmpeg says
-  std::atomic<int> process_ = -1;  // abandoned on any thread
+  int errors_ = -1;                // file with ffmpeg's messages
+  std::atomic<int> process_ = -1;  // atomic, because any thread may abandon it
   int status_ = -1;
   EndTask remove_temporary_;
 };

@@ -14,7 +14,7 @@
 namespace depthgrid {
 namespace {
 
-// Scans cast in the room, with what SLAM says.
+// Scans cast in the true room, with SLAM's output.
 class TrueScanSource final : public FrameSource {
  public:
   TrueScanSource(const World& world, const MapperOptions& mapper, SlamOutput slam)
@@ -57,7 +57,7 @@ SlamOptions WithTruth(SlamOptions slam, const TrueStages& truth) {
     slam.loops = loops;
   }
   if (truth.loops) {
-    // Not zero: the mapper weighs loops by these.
+    // Not zero, because the mapper weights loops by these.
     constexpr double kNearlyExactM = 1e-3;
     constexpr double kNearlyExactDeg = 0.05;
     slam.loops = WithScenario(slam.loops, LoopScenario::kTrue);
@@ -71,7 +71,7 @@ ExperimentOptions WithTruth(ExperimentOptions options, const TrueStages& truth) 
   options.slam = WithTruth(options.slam, truth);
   if (truth.depth) {
     const SensorOptions exact;
-    // What a sensor cannot measure is not noise: the model goes, its limits stay.
+    // Removes the noise model but keeps the sensor's range limits, which are not noise.
     const DepthRange range = SensorRange(options.sensor);
     options.sensor.min_range_m = range.min_m;
     if (std::isfinite(range.max_m)) options.sensor.max_range_m = range.max_m;
@@ -83,7 +83,7 @@ ExperimentOptions WithTruth(ExperimentOptions options, const TrueStages& truth) 
   return options;
 }
 
-// What does not depend on the seed.
+// The data that do not depend on the seed.
 struct Stage {
   const World& world;
   const TruthRecord& truth;
@@ -158,7 +158,7 @@ AblationResult RunAblation(const AblationPlan& plan, const RunContext& context) 
     options.seed = seed;
     for (const AblationVariant& variant : variants) {
       const MappingRun run = RunOne({world, truth, counting}, options, variant.truth);
-      // Of the experiment as it is, which is the first of all runs.
+      // Checked for the unchanged experiment, which is the first run.
       const auto doubt = finished == 0 ? DoubtOfView(run, options) : std::nullopt;
       if (doubt) result.warnings.push_back(*doubt);
       const RunScores scores = Score(run, truth, options.metrics);

@@ -1,4 +1,4 @@
-// How much of an experiment's error each stage owns: the truth is put in for each in turn
+// How much of an experiment's error each stage causes: each in turn is replaced by the truth
 // (docs/statistics.md, "Ablation").
 #pragma once
 
@@ -13,23 +13,23 @@
 
 namespace depthgrid {
 
-// Which stages work on the truth instead of their input.
+// The stages that are replaced by the truth.
 struct TrueStages {
   bool poses = false;      // SLAM's poses
   bool depth = false;      // depth images without noise
   bool converter = false;  // scans cast in the room: neither noise nor conversion
   bool matcher = false;    // the true pose for every matched one
-  bool loops = false;      // SLAM closes every revisit, at once and almost exactly
+  bool loops = false;      // SLAM closes every loop, at once and almost exactly
 };
 
 struct AblationVariant {
   std::string name;
   TrueStages truth;
-  std::string against;  // the variant whose difference from this one is the stage's own
+  std::string against;  // the variant whose difference from this one is the stage's effect
   std::string meaning;
 };
 
-// The experiment as it is, one variant a stage, and all of them at once.
+// The unchanged experiment, one variant per stage, and all stages together.
 const std::vector<AblationVariant>& AblationVariants();
 
 struct AblationRun {
@@ -45,34 +45,35 @@ struct AblationPlan {
 
 struct AblationResult {
   std::vector<AblationRun> runs;
-  std::vector<std::string> warnings;  // what is amiss with the path, the truth and what is seen
+  std::vector<std::string> warnings;  // about the path, the truth and what is seen
 };
 
-// Every variant with every seed, by seed; `progress` counts frames.
+// Runs every variant with every seed, ordered by seed; `progress` counts frames.
 AblationResult RunAblation(const AblationPlan& plan, const RunContext& context);
 
-// What a stage owns of one score's error.
+// The part of one score's error that a stage causes.
 struct StageShare {
   std::string variant;
-  double error = 0.0;     // mean over seeds with this truth put in
+  double error = 0.0;     // mean over seeds, with the stage replaced by the truth
   PairedComparison gain;  // this variant against the one it is compared with; b - a is negative
-  // Mean error owned / mean error of the experiment as it is; empty where that has none.
+  // Mean decrease of the error / mean error of the unchanged experiment; empty where that is zero.
   std::optional<double> share;
   double p_holm = 1.0;  // over the stages
 };
 
 struct ErrorShares {
   std::string metric;
-  bool is_complement = false;  // the error is one less the score
-  double error = 0.0;          // of the experiment as it is
+  bool is_complement = false;  // the error is 1 - score
+  double error = 0.0;          // of the unchanged experiment
   std::vector<StageShare> stages;
 };
 
-// Less the seeds that give what an earlier one gave in every variant and score, as where nothing is
-// random or a seed of its own holds it still: counted again they would make sure what is not.
+// Removes seeds that give the same as an earlier one in every variant and score, as where nothing
+// is random or a separate seed fixes it: counted again they would make results look more
+// significant.
 std::vector<AblationRun> WithoutRepeatedSeeds(const std::vector<AblationRun>& runs);
 
-// For the scores that say most; those not defined in every run are left out.
+// For ScoresOfAnAblation(), without scores that are undefined in any run.
 std::vector<ErrorShares> SharesOf(const std::vector<AblationRun>& runs);
 
 std::string AblationCsv(const std::vector<AblationRun>& runs);

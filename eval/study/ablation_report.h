@@ -9,7 +9,7 @@ namespace depthgrid {
 
 bool IsAblationFolder(const std::string& folder);
 
-// Throws InputError when the folder holds no ablation.
+// Throws InputError when the folder is not an ablation's.
 void WriteAblationReport(const std::string& folder, const ReportPlace& place);
 
 }  // namespace depthgrid

@@ -24,7 +24,7 @@ double ValueOf(const AblationRun& run, const std::string& metric) {
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-// Of all runs: one whose map shows no walls lacks some.
+// The scores that all runs have; a map without walls lacks some.
 std::vector<std::string> ScoresOf(const std::vector<AblationRun>& runs) {
   std::vector<std::string> names;
   for (const AblationRun& run : runs) {
@@ -35,14 +35,14 @@ std::vector<std::string> ScoresOf(const std::vector<AblationRun>& runs) {
   return names;
 }
 
-// Errors are metres or shares, of numbers around one: what is smaller is what rounding leaves of
-// them, and would be taken for a difference that all seeds have.
+// Errors are metres or shares, computed from numbers around 1. Smaller values are rounding errors,
+// and would look like a difference common to all seeds.
 double WithoutResidue(double value) {
   constexpr double kResidue = 1e-12;
   return std::abs(value) < kResidue ? 0.0 : value;
 }
 
-// A variant's errors by seed: of scores that are better when higher, one less the score.
+// A variant's errors by seed; 1 - score for scores that are better when higher.
 std::vector<double> ErrorsOf(const std::vector<AblationRun>& runs, const std::string& variant,
                              const std::string& metric) {
   const bool complement = BetterOf(metric) == Better::kHigher;
@@ -55,7 +55,7 @@ std::vector<double> ErrorsOf(const std::vector<AblationRun>& runs, const std::st
   return errors;
 }
 
-// What the errors fall by from `before` to `after`.
+// The decrease of the errors from `before` to `after`.
 PairedComparison GainOf(const std::vector<double>& before, std::vector<double> after,
                         const Resamples& resamples) {
   for (std::size_t i = 0; i < after.size(); ++i) {

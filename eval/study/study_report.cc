@@ -24,12 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = ReportJson;
 
-constexpr std::size_t kMostPathPoints = 450;  // two a second of a 900-frame path
+constexpr std::size_t kMostPathPoints = 450;  // two per second of a 900-frame path
 
 struct CaseFiles {
   StudyCase head;
   RunFiles run;
-  std::string scene;  // the room: cases of one are shown beside each other
+  std::string scene;  // the room; cases of the same room are shown side by side
   std::string pose_source;
 };
 
@@ -41,8 +41,8 @@ CaseFiles ReadCase(const std::string& folder, const StudyCase& head) {
   return files;
 }
 
-// A short name for a case's room among those of all. Maps in other cells cannot be held beside each
-// other: another room.
+// A short name for a case's room, unique among all. Maps with different cell sizes cannot be
+// compared side by side and so count as different rooms.
 std::string RoomName(const CaseFiles& c, const std::vector<CaseFiles>& cases) {
   const double cell_m = c.run.map.geometry.resolution_m;
   const std::string stem = fs::path(c.scene).stem().string();
@@ -74,7 +74,7 @@ Json PathJson(const Trajectory& trajectory) {
   return json;
 }
 
-// One rectangle for all maps of a room, so that they can be held beside each other.
+// One rectangle for all maps of a room, so that they can be compared side by side.
 std::map<std::string, GridGeometry> RoomParts(const std::vector<CaseFiles>& cases) {
   std::map<std::string, GridGeometry> parts;
   const auto add = [&](const std::string& scene, const StateMap& map) {
@@ -117,7 +117,7 @@ Json CaseJson(const CaseFiles& c, const GridGeometry& part, const Json& metrics)
   return json;
 }
 
-// What the cases differ in beside scene and SLAM, which the page shows by itself.
+// The settings in which the cases differ, without scene and SLAM, which the page shows anyway.
 Json DifferencesJson(const std::vector<CaseFiles>& cases) {
   std::vector<Config> settings;
   for (const CaseFiles& c : cases) {
@@ -130,7 +130,7 @@ Json DifferencesJson(const std::vector<CaseFiles>& cases) {
   return json;
 }
 
-// What the command line changed, a line each; folders of earlier versions do not say.
+// The command line's overrides, one line each; folders of earlier versions do not have them.
 std::vector<std::string> OverridesIn(const std::string& folder) {
   const std::string path = folder + "/overrides.txt";
   std::vector<std::string> overrides;

@@ -9,7 +9,7 @@ namespace depthgrid {
 
 bool IsStudyFolder(const std::string& folder);
 
-// Throws InputError when the folder holds no study, or a case's folder is missing.
+// Throws InputError when the folder is not a study's or a case's folder is missing.
 void WriteStudyReport(const std::string& folder, const ReportPlace& place);
 
 }  // namespace depthgrid

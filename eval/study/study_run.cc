@@ -33,7 +33,7 @@ std::vector<std::vector<std::size_t>> JointGroups(const Study& study) {
   return groups;
 }
 
-// One progress over several groups of frames.
+// Maps a group's progress to that of the whole.
 Progress PartOf(const Progress& whole, std::size_t group, std::size_t groups) {
   if (!whole) return {};
   return [whole, group, groups](int done, int total) {
@@ -41,7 +41,7 @@ Progress PartOf(const Progress& whole, std::size_t group, std::size_t groups) {
   };
 }
 
-// Of a joint run: the same for each of its cases, however many were written before.
+// Times of a joint run, which are the same for all its cases.
 struct JointTimes {
   double wall_s = 0.0;
   double cpu_s = 0.0;
