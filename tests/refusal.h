@@ -1,4 +1,4 @@
-// What is said to a user whose input is refused.
+// The error messages for rejected input.
 #pragma once
 
 #include <string>

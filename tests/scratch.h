@@ -1,5 +1,5 @@
-// A place for a test's files that no other test has: neither one of the same name in another tree,
-// nor the same one started twice at a time.
+// A path for a test's files that no other test uses, not even the same test in another tree or
+// running at the same time.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,11 +10,11 @@
 
 namespace depthgrid {
 
-// The start of a path; what is made there is the test's to remove.
+// A path prefix. The test must remove the files that it makes there.
 inline std::string ScratchPath() {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
   std::string name = std::string("depthgrid_") + test->test_suite_name() + "_" + test->name();
-  std::replace(name.begin(), name.end(), '/', '_');  // of tests with parameters
+  std::replace(name.begin(), name.end(), '/', '_');  // names of parameterised tests contain '/'
   return testing::TempDir() + name + "_" + std::to_string(::getpid());
 }
 

@@ -22,7 +22,7 @@
 
 namespace depthgrid {
 
-// The program's path, or nothing where there is none.
+// The program's path, if there is one.
 inline std::optional<std::string> FindChromium() {
   const char* search = std::getenv("PATH");
   std::istringstream folders(search != nullptr ? search : "");
@@ -47,7 +47,7 @@ class Browser {
       throw std::runtime_error("no pipe");
     }
     std::filesystem::create_directories(folder);
-    prctl(PR_SET_CHILD_SUBREAPER, 1);  // its helpers outlive it: to be waited for here
+    prctl(PR_SET_CHILD_SUBREAPER, 1);  // its helpers outlive it and are waited for here
     child_ = fork();
     if (child_ == 0) Become(program, in[0], out[1]);
     close(in[0]);
@@ -98,7 +98,7 @@ class Browser {
       usleep(20'000);
     }
   }
-  // A real click in the middle of the element, wherever the page has it.
+  // A real click in the middle of the element, after scrolling to it.
   void Click(const std::string& selector) {
     const Json middle = Evaluate(
         "(() => { const e = document.querySelector('" + selector +
@@ -131,15 +131,16 @@ class Browser {
 
   [[noreturn]] void Become(const std::string& program, int in, int out) const {
     setpgid(0, 0);
-    // The protocol's fixed descriptors. Out of the way first: either may be one of these already.
+    // The protocol uses fixed descriptors. These are copied out of the way first, because they may
+    // have the same numbers.
     const int in_copy = fcntl(in, F_DUPFD, 10);
     const int out_copy = fcntl(out, F_DUPFD, 10);
     dup2(in_copy, 3);
     dup2(out_copy, 4);
     const int nothing = open("/dev/null", O_RDWR);
     for (const int stream : {0, 1, 2}) dup2(nothing, stream);
-    // Killed, it leaves temporary files and settings that are not the profile's: they go with it.
-    // Relative, since the path of its socket, which is among them, must fit into 107 bytes.
+    // When killed it leaves temporary files and settings outside the profile; in this folder they
+    // are removed with it. Relative paths, because its socket's path must fit into 107 bytes.
     if (chdir(folder_.c_str()) != 0) _exit(127);
     setenv("TMPDIR", ".", 1);
     setenv("HOME", folder_.c_str(), 1);

@@ -24,7 +24,7 @@ struct Outcome {
   std::string err;
 };
 
-// A folder of its own for each test, with a tiny room and an experiment in it, and the program.
+// A test with its own folder, which contains a tiny room and an experiment, and with the program.
 class ProgramTest : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -63,7 +63,7 @@ class ProgramTest : public ::testing::Test {
     const Outcome outcome = Program(arguments);
     ASSERT_EQ(outcome.exit_code, 0) << arguments << "\n" << outcome.err;
   }
-  // One line on standard error that holds all of `says`; no file appears or goes.
+  // Expects one line on standard error that contains all of `says`, and no change of files.
   void ExpectRefusal(const std::string& arguments, const std::vector<std::string>& says) const {
     SCOPED_TRACE(arguments);
     const auto before = FilesIn("");
@@ -88,7 +88,7 @@ class ProgramTest : public ::testing::Test {
     std::sort(files.begin(), files.end());
     return files;
   }
-  // Where two long texts part, with a little of both; nothing when they are the same.
+  // Where two long texts begin to differ, with an excerpt of both; empty when they are equal.
   static std::string Difference(const std::string& a, const std::string& b) {
     if (a == b) return "";
     const auto at = static_cast<std::size_t>(
@@ -116,7 +116,7 @@ class ProgramTest : public ::testing::Test {
     EXPECT_GT(compared, 10);
   }
 
-  // 3 x 4 m with a cupboard, and a way round it; the camera is small to be quick.
+  // 3 x 4 m with a cupboard, and a path around it; the camera is small for speed.
   static constexpr const char* kRoom = R"(
 name: test_room
 floor_z_m: 0
@@ -146,7 +146,7 @@ mapper: {fusion: {mode: fixed, gain: 0.5}}
   std::filesystem::path root_;
 
  private:
-  // Nothing while it is being linked.
+  // The program's time stamp; the minimum while it is being linked.
   static std::filesystem::file_time_type BuildTime() {
     std::error_code missing;
     return std::filesystem::last_write_time(kProgramFile, missing);

@@ -31,7 +31,7 @@ class ReportPage : public ProgramTest {
   }
   // A canvas' pixels, to see that something changed them.
   std::string PixelsOf(const std::string& selector) {
-    // What was asked to be drawn is drawn in the next animation frame.
+    // Requested drawing happens in the next animation frame.
     browser_->Evaluate(
         "window.drawn = false; requestAnimationFrame(() => requestAnimationFrame(() "
         "=> { window.drawn = true; }))");
@@ -47,7 +47,7 @@ class ReportPage : public ProgramTest {
                   "c.height).data.buffer)).size > 3).length"),
               plots);
   }
-  // Nothing sticks out to the right of a narrow screen.
+  // Expects that nothing extends beyond the right edge of a narrow screen.
   void ExpectFits() {
     EXPECT_LE(browser_->Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(),
               0);

@@ -10,8 +10,8 @@ namespace depthgrid {
 
 struct FuzzTarget {
   std::string name;  // of its folder in tests/fuzz/seeds
-  // Throws nothing but InputError, which it does not let out. Aborts (by a sanitizer or an
-  // exception) when the parser is at fault.
+  // False if the parser throws InputError. Faults of the parser abort (by a sanitizer or another
+  // exception).
   bool (*accepts)(std::string_view bytes);
 };
 

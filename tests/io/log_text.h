@@ -43,7 +43,7 @@ inline std::string RobotLaserLine(const CarmenScan& scan) {
   return line;
 }
 
-// Two readings, taken there and then.
+// A scan of two readings at this pose and time.
 inline std::string ScanAt(double x_m, double y_m, int stamp_s) {
   std::ostringstream line;
   line.precision(17);
@@ -57,7 +57,7 @@ inline std::vector<Frame> ReadAll(FrameSource& source) {
   return frames;
 }
 
-// Of the log with this text, one a line.
+// The warnings for a log with this text, one per line.
 inline std::string WarningsOf(const std::string& text, const CarmenLogOptions& options = {}) {
   const TextFile file(text);
   std::string all;

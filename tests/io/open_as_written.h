@@ -1,4 +1,4 @@
-// The frames of a folder of depth images in the world of its own poses, whichever way is up.
+// Opens a folder of depth images in the world of its poses, without searching for the up direction.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// A folder of its own for each test, gone afterwards.
+// A test with its own folder, which is removed afterwards.
 #pragma once
 
 #include <gtest/gtest.h>

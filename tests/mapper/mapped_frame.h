@@ -6,8 +6,8 @@
 
 namespace depthgrid {
 
-// Frame `i` of a run at 30 Hz, mapped at `estimate`: what a laser at `truth` sees is both its
-// scans.
+// Frame `i` of a run at 30 Hz, mapped at `estimate`; both its scans are what a laser at `truth`
+// sees.
 inline MappedFrame MappedFrameAt(const PlanarWorld& world, const PlanarLaser& laser,
                                  const Pose2& truth, const Pose2& estimate, int i) {
   MappedFrame frame;

@@ -48,7 +48,7 @@ inline std::optional<double> CastRay(const PlanarWorld& world, const Eigen::Vect
   return nearest;
 }
 
-// Beams evenly spaced in bearing. Nothing within range clears up to the range limit.
+// Beams evenly spaced in bearing. Beams without a hit are free up to the range limit.
 inline Scan ScanOf(const PlanarWorld& world, const Pose2& world_from_base, const PlanarLaser& laser,
                    std::uint64_t seed = 0, std::uint32_t frame = 0) {
   RandomStream random(seed, RandomStage::kTest, frame);

@@ -1,4 +1,4 @@
-// Small maps drawn in a test's text, and rooms as points to be moved about.
+// Small maps drawn as text, and a room that can be moved.
 #pragma once
 
 #include <string>
@@ -25,8 +25,8 @@ inline StateMap DrawnMap(const std::vector<std::string>& rows, double resolution
   return map;
 }
 
-// A room of 4 x 3 m with a cupboard, a partition and a slanted wall, as a map would hold it when
-// its walls lie where `map_from_room` puts them: occupied where a wall's line passes, free inside.
+// A room of 4 x 3 m with a cupboard, a partition and a slanted wall, as a map with the room at
+// `map_from_room`: occupied where a wall's line passes, free inside.
 inline StateMap MovedRoom(const Pose2& map_from_room, double resolution_m = 0.05) {
   struct Line {
     Eigen::Vector2d a, b;

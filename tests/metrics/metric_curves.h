@@ -1,5 +1,4 @@
-// What each score of a map says when a map is wrong in a known way and by a known amount: the
-// sanity curves of docs/metrics.md.
+// Scores of maps with a known kind and amount of error: the sanity curves of docs/metrics.md.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +22,7 @@ using CurvePoint = std::vector<std::pair<std::string, double>>;  // score and va
 struct Curve {
   std::string disturbance;  // with its unit
   std::vector<double> amounts;
-  std::vector<CurvePoint> points;  // one an amount
+  std::vector<CurvePoint> points;  // one per amount
 
   std::vector<double> Of(const std::string& score) const {
     std::vector<double> values;
@@ -36,7 +35,7 @@ struct Curve {
   }
 };
 
-// The room lies across the lattice, as rooms do.
+// The room is rotated against the grid, as usual.
 inline Pose2 CurveRoomPose() { return {0.513, 0.521, 0.3}; }
 
 inline OccupancyMap SureMap(const StateMap& states) {
@@ -72,7 +71,7 @@ inline CurvePoint ScoresOf(const StateMap& truth, const OccupancyMap& estimate) 
       {"plans: collisions", q.navigability ? q.navigability->collision_rate.value_or(NAN) : NAN}};
 }
 
-// Turned about the room's middle.
+// Rotated about the room's centre.
 inline OccupancyMap TurnedRoom(double yaw_rad) {
   const Pose2 about{2.0, 1.5, 0.0};
   return SureMap(MovedRoom(CurveRoomPose() * about * Pose2{0.0, 0.0, yaw_rad} * Inverse(about)));
@@ -83,7 +82,7 @@ inline OccupancyMap ShiftedRoom(double shift_m) {
   return SureMap(MovedRoom(Pose2{part_m, part_m, 0.0} * CurveRoomPose()));
 }
 
-// Walls smeared by a Gaussian, their middle as sure as before.
+// Walls blurred by a Gaussian, with the original probability at their centre.
 inline OccupancyMap BlurredRoom(double sigma_m) {
   const StateMap room = MovedRoom(CurveRoomPose());
   OccupancyMap map = SureMap(room);
@@ -94,14 +93,14 @@ inline OccupancyMap BlurredRoom(double sigma_m) {
   const double middle = 1.0 / std::max(1.0, std::sqrt(2.0 * kPi) * sigma_cells);
   for (std::size_t i = 0; i < room.states.size(); ++i) {
     const double share = std::min(1.0, walls.values[i] / middle);
-    // Behind the walls the smear is seen as well.
+    // The blur also extends behind the walls.
     if (room.states[i] == CellState::kUnknown && share < 0.1) continue;
     map.occupied_prob[i] = static_cast<float>(0.1 + 0.8 * share);
   }
   return map;
 }
 
-// A share of the known cells is not known.
+// A share of the known cells is made unknown.
 inline OccupancyMap ThinnedRoom(double share) {
   OccupancyMap map = SureMap(MovedRoom(CurveRoomPose()));
   for (std::size_t i = 0; i < map.occupied_prob.size(); ++i) {

@@ -1,4 +1,4 @@
-// True paths that tests of the SLAM surrogate disturb.
+// True paths for tests of the SLAM surrogate.
 #pragma once
 
 #include <cmath>
@@ -8,7 +8,7 @@
 
 namespace depthgrid {
 
-// A camera that stays where it is: what moves is the error.
+// A static camera, so that all motion is error.
 inline Trajectory Standing(int frames, double step_s = 1.0 / 30.0) {
   Trajectory truth;
   for (int i = 0; i < frames; ++i) {

@@ -1,4 +1,4 @@
-// Clean depth frames for tests of what a sensor does to them.
+// Noise-free depth frames for tests of the sensor model.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ inline SensorOptions Options(DepthNoiseModel model) {
   return options;
 }
 
-// Every pixel at one depth, met at one incidence.
+// All pixels have the same depth and incidence angle.
 inline DepthFrame Constant(double z_m, double incidence_deg) {
   DepthFrame frame{DepthImage(640, 480), {}};
   frame.depth.z_m.assign(frame.depth.z_m.size(), static_cast<float>(z_m));

@@ -1,4 +1,5 @@
-// Scores of two settings over ten seeds, of which other programs computed statistics too.
+// Scores of two settings over ten seeds, for which other programs have computed reference
+// statistics.
 #pragma once
 
 #include <vector>
