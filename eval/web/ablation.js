@@ -1,4 +1,4 @@
-// The page of an ablation: how much of each score's error every stage owns.
+// The page of an ablation: how much of each score's error every stage causes.
 "use strict";
 const ABLATION = JSON.parse(byId("data").textContent);
 const [BAR_WIDTH, BAR_HEIGHT] = [240, 22];
@@ -28,9 +28,9 @@ function barOf(score, stage, name, at) {
   return picture;
 }
 
-// Over the bars: where none and all of the error is.
+// Scale above the bars: 0 and all of the error.
 function scaleHead(at) {
-  // In the letters of a narrow page, which are wider on the bar's scale.
+  // Letter width of a narrow page, where letters are wider relative to the bar.
   const [HALF_ZERO, HALF_ALL, GAP] = [6, 26, 6];
   const all = Math.min(Math.max(at(1), HALF_ALL + 2 * HALF_ZERO + GAP), BAR_WIDTH - HALF_ALL);
   const none = Math.min(Math.max(at(0), HALF_ZERO), all - HALF_ALL - GAP - HALF_ZERO);

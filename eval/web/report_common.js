@@ -20,18 +20,18 @@ function svg(tag, attributes, ...children) {
   return element;
 }
 
-// Of a path beside this page, whose folders may have any name.
+// URL of a path relative to this page; names of folders may contain any character.
 const linkOf = (path) => path.split("/").map(encodeURIComponent).join("/");
 
 const isNumber = (value) => typeof value === "number" && Number.isFinite(value);
-// Of any number of items: a call does not take 100,000 arguments in every browser.
+// For any number of items: not every browser allows 100,000 arguments in a call.
 const largest = (items, of) => items.reduce((most, item) => Math.max(most, of(item)), 0);
 const fixed = (value, digits) => (isNumber(value) ? value.toFixed(digits).replace(/^-(0(\.0*)?)$/, "$1") : "–");
-// To so many significant digits; of thousands to whole numbers, lest rounded ones look like exact counts. No count has 16 digits.
+// Rounded to `digits` significant digits, but never beyond the decimal point: a rounded number must not look like an exact count.
 const rounded = (value, digits) => (Math.abs(value) >= 10 ** (digits - 1) && Math.abs(value) < 1e15 ? Math.round(value) : Number(value.toPrecision(digits)));
-// As many digits as tell something: 4 significant ones, no trailing zeros.
+// 4 significant digits without trailing zeros.
 const compact = (value) => (isNumber(value) ? String(rounded(value, 4)) : "–");
-// Metres as a person says them.
+// Metres in readable form.
 function metres(value) {
   if (!isNumber(value)) return "–";
   const size = Math.abs(value);
@@ -43,8 +43,8 @@ function metres(value) {
 const UNITS = { m_per_s: "m/s", m_per_m: "m/m", m: "m", rad: "rad", deg: "°", s: "s", us: "µs", mib: "MiB", cells: "cells" };
 const UNIT_END = new RegExp(`_(${Object.keys(UNITS).join("|")})$`);
 const unitOf = (name) => UNITS[name.match(UNIT_END)?.[1]] ?? "";
-// The unit that suits most of the values: millimetres or centimetres where lengths are small, degrees for radians.
-// `label` is the name without a unit that they are not in.
+// The best unit for most of the values: millimetres or centimetres where lengths are small, degrees for radians.
+// `label` is the name without its original unit.
 function suitedUnit(name, values) {
   const unit = unitOf(name);
   const sizes = values.filter(isNumber).map(Math.abs).sort((a, b) => a - b);
@@ -57,14 +57,14 @@ function suitedUnit(name, values) {
 const percent = (value) => (isNumber(value) ? `${fixed(value * 100, 1)} %` : "–");
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 
-// What fits on a sheet of A4 or US letter between the margins: the page is still as wide as the
+// The width between the margins of A4 and US letter paper: the page is still as wide as the
 // window when the browser says that it is about to print.
 const PRINT_WIDTH = 690;
 let printing = false;
 const widthFor = (container, least, otherwise) => (printing ? PRINT_WIDTH : Math.max(least, container.clientWidth || otherwise));
 
 // ---- theme ----
-const themeListeners = [];  // redraw what is painted in the theme's colours
+const themeListeners = [];  // called to redraw in the theme's colours
 function setTheme(theme) {
   document.documentElement.dataset.theme = theme;
   const button = byId("theme");
@@ -82,7 +82,7 @@ function initTheme() {
   window.addEventListener("beforeprint", () => {
     onScreen = current();
     printing = true;
-    setTheme("light");  // which draws everything anew
+    setTheme("light");  // which redraws everything
     for (const details of document.querySelectorAll("details")) details.open = true;
   });
   window.addEventListener("afterprint", () => {
@@ -98,7 +98,7 @@ function tableOf(head, rows) {
 }
 
 // ---- painting on a canvas ----
-// Stops of matplotlib's viridis (CC0): even in brightness, readable without colour vision.
+// Stops of matplotlib's viridis (CC0): perceptually uniform, readable without colour vision.
 const VIRIDIS = [[68, 1, 84], [65, 68, 135], [42, 120, 142], [34, 168, 132], [122, 209, 81], [253, 231, 37]];
 function viridis(share) {
   const position = Math.max(0, Math.min(1, share)) * (VIRIDIS.length - 1);
@@ -132,9 +132,9 @@ function paintedCanvas(width, height, label, paint) {
 
 // ---- plots ----
 const allPlots = [];
-const TEXT_WIDTH = 7;  // of a letter of a label, pixels
+const TEXT_WIDTH = 7;  // of a label's letter, pixels
 
-// As many digits as tell apart what the axis shows, and no fewer than asked for.
+// Enough digits to distinguish the values on the axis, and at least those asked for.
 function digitsOn(scale, least) {
   const span = Math.abs(scale.max - scale.min);
   return span > 0 ? Math.max(least, Math.min(6, 1 - Math.floor(Math.log10(span)))) : least;
@@ -149,7 +149,7 @@ function seriesOf(s) {
   };
 }
 
-// Points as large as what they stand for: their areas are as the weights.
+// Points whose areas are proportional to their weights.
 function drawWeighted(u, series) {
   const MOST_RADIUS = 10;
   const LEAST_RADIUS = 1.5;
@@ -191,7 +191,7 @@ function drawIntervals(u, series) {
   });
 }
 
-// Of a logarithmic axis that begins at `least`, whatever lies below it.
+// Range of a logarithmic axis that begins at `least`; smaller values are not shown.
 const rangeFrom = (least) => (u, low, high) => uPlot.rangeLog(least, Math.max(high ?? 0, 10 * least), 10, true);
 
 // The y range must hold the whiskers too, not only the points.
@@ -205,7 +205,7 @@ function rangeWithIntervals(series, log) {
   };
 }
 
-// The legend's names can be reached and switched without a mouse.
+// Makes the legend's names accessible by keyboard.
 function openLegendToKeys(u, title) {
   u.root.querySelectorAll(".u-legend .u-series").forEach((row, k) => {
     if (k === 0) return;
@@ -224,7 +224,7 @@ function openLegendToKeys(u, title) {
   });
 }
 
-// The part of x that is left by a zoom about the cursor.
+// The range of x after zooming about the cursor.
 function zoomed(u, x, factor) {
   const { min, max } = u.scales.x;
   const at = u.cursor.idx != null ? x[u.cursor.idx] : (min + max) / 2;
@@ -232,7 +232,7 @@ function zoomed(u, x, factor) {
   return { min: Math.max(all_min, at - (at - min) * factor), max: Math.min(all_max, at + (max - at) * factor) };
 }
 
-// With its middle left out where it is longer: names of one kind differ at their ends.
+// Shortened in the middle if it is longer, because similar names differ at their ends.
 function shortened(text, most) {
   if (text.length <= most) return text;
   const kept = Math.max(2, most - 1);
@@ -252,13 +252,13 @@ function logTicks(x, low, high) {
   return inside.length > 2 ? inside : [...new Set(x)].filter((v) => v >= low && v <= high);
 }
 
-// Of a linear axis, with the decimals that its ticks have.
+// Labels of a linear axis, with the decimals of its ticks.
 function linearLabels(u, ticks, k, space, step) {
   let decimals = 0;
   while (decimals < 12 && Math.abs(step - Number(step.toFixed(decimals))) > 1e-6 * step) ++decimals;
   return ticks.map((v) => fixed(v, decimals));
 }
-// Ticks that an axis leaves out are null.
+// Ticks without labels are null.
 const logLabels = (u, ticks) => ticks.map((v) => (v === null ? null : compact(v)));
 
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash, digits, unit,
@@ -272,9 +272,9 @@ function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height
   const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title, save));
   container.append(box);
   let plot = null;
-  let quiet = false;  // the cursor moves because somebody else moved it
+  let quiet = false;  // the cursor is being moved by another plot
   const width = () => widthFor(container, 280, 1100);
-  // Dots and whiskers at the ends must not be cut.
+  // Dots and whiskers at the ends must not be clipped.
   const roomAround = (u, low, high) => {
     if (xNames) return [Math.min(low, high) - 0.5, high + 0.5];
     if (logX) return [low * (low / high) ** 0.02, high * (high / low) ** 0.02];
@@ -302,13 +302,13 @@ function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height
     };
   };
   const draw = () => {
-    // Drawn anew in other colours or for paper it shows what it showed.
+    // When redrawn in other colours or for paper it keeps its range.
     const before = plot && state();
     if (plot) plot.destroy();
     const settings = options();
     if (before) {
       settings.series.forEach((s, k) => { s.show = before.shown[k]; });
-      // The range shown has its room already.
+      // The shown range already includes the margin.
       const { range } = settings.scales.x;
       if (range) settings.scales.x.range = (u, low, high) => (low === before.min && high === before.max ? [low, high] : range(u, low, high));
     }
@@ -318,7 +318,7 @@ function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height
   };
   const state = () => ({ min: plot.scales.x.min, max: plot.scales.x.max, shown: plot.series.map((s) => s.show) });
   const setRange = ({ min, max }) => plot.setScale("x", { min, max });
-  // As a drag does, of all plots that share the cursor.
+  // Like dragging, for all plots that share the cursor.
   const zoomTo = (range) => { for (const other of allPlots) if (other.box === box || (sync && other.sync === sync)) other.setRange(range); };
   let shown = null;
   const show = (i) => {

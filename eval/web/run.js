@@ -2,7 +2,7 @@
 "use strict";
 
 // ---- headline ----
-// How far a path goes, in steps of a quarter of a metre: the poses' scatter does not add up.
+// Length of a path, in steps of 0.25 m, so that the poses' jitter does not add up.
 function wayOf(path) {
   let way = 0, last = null;
   for (let i = 0; i < path.x.length; i++) {
@@ -50,7 +50,7 @@ function headline() {
     } else {
       add(String(frameCount), "frames");
       if (posed < frameCount) add(`${frameCount - posed} of ${frameCount}`, `frames without a pose: ${RUN.input_poses} was lost`);
-      // Of a place that is well seen already no more scans are kept, though every frame is mapped.
+      // No more scans are kept of a place that has been seen well, though every frame is mapped.
       const kept = RUN.own_scans === posed ? "frames mapped" : "scans kept, which the map is drawn from";
       add(String(RUN.own_scans), RUN.prior_scans ? `scans added to the finished map's ${RUN.prior_scans}` : kept);
     }
@@ -85,7 +85,7 @@ function initSamples() {
   }
 }
 
-// Everything metrics.json says of the map beyond its cells; a run may lack any of it.
+// All scores of the map in metrics.json beyond cell scores; a run may lack any of them.
 function furtherMapNumbers(map) {
   const rows = [];
   const add = (label, value, show) => { if (isNumber(value)) rows.push([label, show(value)]); };
@@ -117,7 +117,7 @@ function furtherMapNumbers(map) {
   return rows;
 }
 
-// Of each path: turns, relative errors, drift, and how much of it was compared.
+// For each path: rotation errors, relative errors, drift, and the share that was compared.
 const degrees = (rad) => (isNumber(rad) ? `${fixed(rad * 180 / Math.PI, 3)}°` : "–");
 const FURTHER_OF_PATHS = [
   ["heading, mean, not aligned", (s) => degrees(s.heading_mean_rad)],

@@ -1,11 +1,11 @@
-// What the parts of a run's page share: its data and what is chosen.
+// Shared by the parts of a run's page: its data and the selection.
 "use strict";
 const RUN = JSON.parse(byId("data").textContent);
 const frames = RUN.frames;
 const frameCount = frames.frame.length;
 // The map is light in both themes, so what is drawn on it keeps its colours.
 const MAP_COLOURS = { truth: "#009e73", slam: "#d98c00", online: "#56b4e9", est: "#0072b2", scan: "#d4002a", missed: "#d55e00", invented: "#cc79a7" };
-// SLAM was lost in the others: they are not mapped, and their times and beams tell nothing.
+// In the other frames SLAM was lost: they are not mapped, and their times and beams are meaningless.
 const hasPose = (i) => RUN.paths.slam.x[i] !== null;
 const whereMapped = (values) => values.map((v, i) => (hasPose(i) ? v : null));
 let currentFrame = 0;

@@ -15,7 +15,7 @@ function toCanvas(x, y) {
   return [view.x + column * size, view.y + row * size];
 }
 
-// The truth is wide and pale, so that it is seen on both sides of an estimate that lies upon it.
+// The truth is wide and pale, so that it is visible on both sides of an estimate on top of it.
 function drawPath(context, name, path, stroke) {
   context.strokeStyle = stroke;
   context.globalAlpha = name === "truth" ? 0.5 : 1;
@@ -50,7 +50,7 @@ function drawPose(context, path, i, fill) {
   context.stroke();
 }
 
-// The scan nearest to a frame: not every frame's is kept. None for one whose place is not known.
+// The scan nearest to a frame, because not every frame's is kept. None for a frame without a pose.
 function scanNear(i, path) {
   if (!path || path.x[i] === null) return null;
   let best = -1;
@@ -60,7 +60,7 @@ function scanNear(i, path) {
   return best < 0 ? null : RUN.scans[best];
 }
 
-// The hits of the scan that is drawn with the chosen frame, on the map.
+// The hits, on the map, of the scan drawn with the selected frame.
 const scannedPath = () => RUN.paths.est ?? RUN.paths.online;
 function shownHits() {
   const path = scannedPath();
@@ -85,7 +85,7 @@ function drawScan(context) {
   }
 }
 
-// A round length that takes up to a quarter of the width.
+// A round length of at most a quarter of the width.
 function scaleBar() {
   const pixelsPerMetre = cellSize() / RUN.map.resolution;
   const wanted = canvas.width / 4 / pixelsPerMetre;
@@ -130,10 +130,10 @@ function drawMap() {
   drawScaleBar(context);
 }
 
-// What the map shows, with a key of all that is on it.
+// Draws what the map shows, with a key of all layers.
 function mapSvg() {
   const size = cellSize();
-  const pixel = canvas.width / FIGURE_WIDTH;  // of the figure, in the canvas' own
+  const pixel = canvas.width / FIGURE_WIDTH;  // of the figure, in canvas pixels
   const height = Math.round(mapHeight() / pixel);
   const at = (x, y) => toCanvas(x, y).map((v) => v / pixel);
   const pathOf = (path) => {
@@ -179,7 +179,7 @@ function resizeMap() {
   canvas.height = Math.round(Math.min(most, width * RUN.map.height / RUN.map.width) + STRIP_PX * devicePixelRatio);
   canvas.style.aspectRatio = `${canvas.width} / ${canvas.height}`;
   if (view.whole) { resetView(); return; }
-  // What was in the middle stays there.
+  // The centre stays in place.
   view.x = canvas.width / 2 - middle[0] * cellSize();
   view.y = mapHeight() / 2 - middle[1] * cellSize();
   requestDraw();
@@ -209,7 +209,7 @@ function pan(dx, dy) {
   requestDraw();
 }
 
-// The map without a mouse: arrows move, + and - zoom, 0 shows all.
+// Keyboard control of the map: arrows move, + and - zoom, 0 shows all.
 function moveByKey(event) {
   const step = 0.1 * canvas.width;
   const move = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];

@@ -1,7 +1,7 @@
-// What a run did over time, and how long each stage took.
+// Plots of a run over time, and the time of each stage.
 "use strict";
 
-// null where there is nothing to draw.
+// null if there is nothing to draw.
 const scaled = (values, factor) => values.map((v) => (v === null ? null : v * factor));
 const hasColumn = (column) => Boolean(frames[column]) && frames[column].some((v) => v !== null);
 const times = frames.stamp_s.map((t) => t - frames.stamp_s[0]);
@@ -49,7 +49,7 @@ const LEAST_US = 1;  // shown: a stage that had nothing to do takes a fraction o
 // Of at least 25 frames each, at most 200 of them.
 const BLOCK_FRAMES = Math.max(25, Math.ceil(frameCount / 200));
 
-// What a frame usually takes where one of a thousand takes a thousand times as long: of each block its median.
+// The usual time of a frame, robust to rare frames that take far longer: the median of each block.
 function mediansOfBlocks(values) {
   const blocks = Math.ceil(values.length / BLOCK_FRAMES);
   const medians = Array.from({ length: blocks }, (_, k) => median(values.slice(k * BLOCK_FRAMES, (k + 1) * BLOCK_FRAMES)));
@@ -72,7 +72,7 @@ function initTimes() {
     const mean = sorted.reduce((a, b) => a + b, 0) / Math.max(1, sorted.length);
     return [label, fixed(mean, 0), fixed(at(sorted, 0.5), 0), fixed(at(sorted, 0.95), 0), fixed(at(sorted, 1), 0), fixed(sum / 1e6, 2)];
   };
-  const shown = STAGES.filter(([name]) => measured[`${name}_us`]?.some((v) => v > 0));  // pages of older runs lack some
+  const shown = STAGES.filter(([name]) => measured[`${name}_us`]?.some((v) => v > 0));  // older runs lack some
   const lost = times.filter((t, i) => !hasPose(i)).length;
   if (lost) byId("times").append(make("p", { class: "muted" }, `Without the ${lost} ${lost === 1 ? "frame" : "frames"} that have no pose and are not mapped; the sums are of all.`));
   byId("times").append(make("div", { class: "scroll" }, tableOf(

@@ -2,8 +2,8 @@
 // how well it would have fitted at the poses around.
 "use strict";
 
-// Prediction, match, estimate and truth have a shape each, so that they can be told apart without
-// colours and where they lie upon each other.
+// Prediction, match, estimate and truth have different shapes, so that they are distinguishable without
+// colours and where they overlap.
 const MARKS = [
   ["prediction", "prediction", "slam", "circle"], ["match", "match", "scan", "cross"],
   ["estimate", "estimate at the time", "est", "dot"], ["truth", "truth", "truth", "diamond"],

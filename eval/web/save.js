@@ -4,7 +4,7 @@
 function saveFile(name, content, type) {
   const url = URL.createObjectURL(new Blob([content], { type }));
   make("a", { href: url, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(url), 60000);  // when it surely is written
+  setTimeout(() => URL.revokeObjectURL(url), 60000);  // when it has certainly been written
 }
 
 // A row of buttons. `kinds`: {SVG, PNG, CSV: what gives the content, or a promise of it, when asked}.
@@ -49,11 +49,11 @@ function csvOfTable(table, unit) {
 }
 
 // ---- pictures ----
-const FIGURE_WIDTH = 640;  // letters have 8 points where it is as wide as a page's text
+const FIGURE_WIDTH = 640;  // letters are 8 points high if it is as wide as a page's text
 const PNG_SCALE = 3;
 const INK = "#1b1f24";
 
-// What `draw` gives with the colours of the light theme; nothing is painted in between.
+// The result of `draw` with the colours of the light theme; the screen is not repainted meanwhile.
 function inLight(draw) {
   const root = document.documentElement;
   const theme = root.dataset.theme;
@@ -78,7 +78,7 @@ async function pngOfSvg(element) {
 const pngOfCanvas = (canvas) => new Promise((resolve) => { canvas.toBlob(resolve, "image/png"); });
 const pictureKinds = (draw) => ({ SVG: async () => svgText(await draw()), PNG: async () => pngOfSvg(await draw()) });
 
-// Lines of text no longer than `most` letters.
+// Splits text into lines of at most `most` letters.
 function wrapped(text, most) {
   const lines = [""];
   for (const word of text.split(/\s+/)) {
@@ -130,7 +130,7 @@ function titledFigure(title, { height, parts }) {
   return figureSvg(height + LINE * lines.length + 4, ...lines, svg("g", { transform: `translate(0,${LINE * lines.length + 4})` }, ...parts));
 }
 
-// What uPlot drew, in the same places.
+// Reproduces what uPlot drew, at the same positions.
 function tracedPlot(u, series, xLabel, yLabel) {
   const [left, top, width, height] = ["left", "top", "width", "height"].map((side) => u.bbox[side] / uPlot.pxRatio);
   const [right, bottom] = [left + width, top + height];
@@ -155,7 +155,7 @@ function legendEntry(s) {
   return { label: s.label, stroke: colour(s.colour), dash: s.dash, mark: s.onlyPoints ? dot : undefined };
 }
 
-// Line, dots and whiskers, these moved aside as on the page.
+// Line, dots and whiskers; whiskers are shifted sideways as on the page.
 function seriesSvg(x, s, px, py, aside) {
   const stroke = colour(s.colour);
   const known = [...x.keys()].filter((i) => isNumber(x[i]) && isNumber(s.values[i]));
@@ -174,7 +174,7 @@ function seriesSvg(x, s, px, py, aside) {
   return parts;
 }
 
-// A column a series, the ends of its intervals, and what its dots' areas stand for.
+// Columns for each series: its values, the ends of its intervals, and its weights.
 function csvOfPlot(x, series, xLabel, xNames) {
   const inUnit = (s, words) => `${s.label}${words}${s.unit ? ` (${s.unit})` : ""}`;
   const columns = series.flatMap((s) => [[inUnit(s, ""), s.values], ...(s.low ? [[inUnit(s, ", 95 % low"), s.low], [inUnit(s, ", 95 % high"), s.high]] : []), ...(s.weights ? [[s.weighedBy, s.weights]] : [])]);

@@ -2,22 +2,22 @@
 "use strict";
 const STUDY = JSON.parse(byId("data").textContent);
 const NAMES = { ground_truth: "Ground truth", orb_slam2: "ORB-SLAM2", planar_slam: "Planar-SLAM", planar_slam_mh: "Planar-SLAM, Manhattan" };
-// Files stay as they are written.
+// A readable name; paths of files are unchanged.
 const nameOf = (word) => NAMES[word] ?? (word.includes("/") ? word : word.charAt(0).toUpperCase() + word.slice(1).replaceAll("_", " "));
 const casesIn = (room) => STUDY.cases.filter((c) => c.scene === room.scene);
 // The maps are light in both themes, so what is drawn on them keeps its colours.
 const PATH_COLOURS = { truth: "#009e73", input: "#d98c00", output: "#0072b2" };
-// By where its poses come from, and by its own name where several cases of a room share that.
+// Named by the source of its poses, and by its own name where several cases of a room share the source.
 const isAlone = (c) => STUDY.cases.filter((one) => one.scene === c.scene && one.pose_source === c.pose_source).length === 1;
 const sourceOf = (c) => (isAlone(c) ? nameOf(c.pose_source) : `${nameOf(c.pose_source)} (${c.name})`);
 const millimetres = (value) => fixed(isNumber(value) ? 1000 * value : value, 1);
 const seen = (map) => map?.observable ?? map?.all;
 
-// Without alignment, and aligned; the best are a few millimetres.
+// Without and with alignment; the best errors are a few millimetres.
 const errorCells = (score) => [fixed(score?.mean_euclidean_m, 4), fixed(score?.ate_rmse_se2_m, 4)];
 const linkTo = (c, text) => make("a", { href: linkOf(`${STUDY.back}${c.name}/report.html`) }, text);
 
-// Rooms above what the errors are of, above how they are taken.
+// Header rows: rooms, then what the errors are of, then how they are computed.
 function tableHead() {
   const group = (text, columns, first) => make("th", { scope: columns > 1 ? "colgroup" : "col", colspan: columns, class: first ? "room" : "" }, text);
   const rooms = STUDY.rooms.map((room) => group(nameOf(room.scene), 5, true));
@@ -89,7 +89,7 @@ function pathPicture(room, c) {
   return picture;
 }
 
-// The figures of rows that lie beneath each other, each with what is said of it.
+// Figures of the rows, one below the other, with their captions.
 function rowsSvg(rows, names) {
   const [GAP, LINE] = [6, 13];
   const size = (one) => (one.naturalWidth ? [one.naturalWidth, one.naturalHeight] : (one.getAttribute("viewBox")?.split(" ") ?? [0, 0, 1, 1]).slice(2).map(Number));
@@ -118,7 +118,7 @@ function rowsSvg(rows, names) {
   return figureSvg(y + (names.length ? legend.height : 0), ...parts, ...legend.elements);
 }
 
-// A picture of the page with what its style sheet says of it.
+// A picture of the page with the properties from its style sheet.
 function inlined(picture, place) {
   const copy = picture.cloneNode(true);
   const styled = [...picture.querySelectorAll("*")];
@@ -151,7 +151,7 @@ function initMapTable() {
   byId("map-table-title").append(saveButtons("Scores of the maps", { CSV: () => csvOfTable(table) }));
 }
 
-// What the command line changed: published figures and notes are of the file as it stands.
+// Overrides from the command line: published figures and notes apply to the unchanged file.
 function initOverrides() {
   if (STUDY.overrides.length === 0) { byId("overrides").remove(); return; }
   byId("overrides").append("Changed on the command line: ", ...STUDY.overrides.flatMap((text, i) => [i > 0 ? ", " : "", make("code", {}, text)]),

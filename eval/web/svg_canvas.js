@@ -15,7 +15,7 @@ class SvgContext {
   beginPath() { this.path = ""; }
   moveTo(x, y) { this.path += `M${x.toFixed(2)},${y.toFixed(2)}`; }
   lineTo(x, y) { this.path += `${this.path ? "L" : "M"}${x.toFixed(2)},${y.toFixed(2)}`; }
-  // A whole circle: nothing else is painted.
+  // Always a full circle; the pages paint no other arcs.
   arc(x, y, radius) { this.path += `M${(x - radius).toFixed(2)},${y.toFixed(2)}a${radius},${radius} 0 1 0 ${2 * radius},0a${radius},${radius} 0 1 0 ${-2 * radius},0`; }
   stroke() { this.add("path", { d: this.path, fill: "none", ...this.pen() }); }
   fill() { this.add("path", { d: this.path, fill: this.fillStyle }); }

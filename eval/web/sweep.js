@@ -4,7 +4,7 @@
 function subtitle() {
   const axes = AXES.filter((axis) => axis.texts.length > 1).map((axis) => `${axis.texts.length} ${axis.key}`);
   const seeds = largest(POINTS, (p) => p.runs);
-  // Axes that are not crossed with each other: the number of points says more.
+  // For axes that are not crossed with each other the number of points is more useful.
   const crossed = AXES.reduce((product, axis) => product * axis.texts.length, 1) === POINTS.length;
   const size = [...(crossed ? axes : [`${POINTS.length} points of ${AXES.map((axis) => axis.key).join(", ")}`]), ...(seeds > 1 ? [SWEEP.seed_keys.length > 1 ? `${seeds} of ${SWEEP.seed_keys.join(", ")}` : `${seeds} seeds`] : [])].join(" x ");
   const state = SWEEP.finished === SWEEP.planned ? `${SWEEP.finished} ${SWEEP.finished === 1 ? "run" : "runs"}` : `${SWEEP.finished} of ${SWEEP.planned} runs so far`;
@@ -38,7 +38,7 @@ function headline() {
 function initFailures() {
   const failures = Object.entries(SWEEP.runs?.failures ?? {});
   if (!failures.length) { byId("failures-section").remove(); return; }
-  // Reasons that differ in a number only are one.
+  // Reasons that differ only in numbers are grouped.
   const kinds = new Map();
   for (const [row, reason] of failures) {
     const kind = reason.replace(/\d[\d.e+-]*/g, "#");
@@ -52,7 +52,7 @@ function initFailures() {
   byId("failures").append(tableOf(["failed", "at", "runs", "reason"], [...kinds.values()].map(line)));
 }
 
-// The values that these runs have of each axis of which they have not all.
+// For each axis of which these runs do not cover all values: the values that they have.
 function settingsOf(rows) {
   const parts = AXES.map((axis, i) => {
     const values = [...new Set(rows.map((row) => POINTS[SWEEP.runs.point[row]].values[i]))].sort((a, b) => a - b);
@@ -87,7 +87,7 @@ if (METRICS.length) {
     drawAlong();
     headline();
     initHeat();
-  } else {  // seeds alone
+  } else {  // only seeds
     for (const id of ["plot-section", "best-section", "heat-section"]) byId(id).remove();
     headline();
   }

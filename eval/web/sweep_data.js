@@ -1,9 +1,9 @@
-// What the parts of a sweep's page share: its data, the chosen metric, and choosing grid points.
+// Shared by the parts of a sweep's page: its data, the selected metric and the selection of grid points.
 "use strict";
 const SWEEP = JSON.parse(byId("data").textContent);
 // Counts and seeds in full.
 const exact = (value) => (Number.isInteger(value) ? String(value) : compact(value));
-// Files without their folder and kind, if that tells them apart.
+// Files without folder and extension, if they remain distinct.
 function nameLabels({ key, texts }) {
   if (key !== "scene" && key !== "trajectory") return texts;
   const names = texts.map((text) => text.split("/").at(-1).replace(/\.\w+$/, ""));
@@ -15,7 +15,7 @@ const POINTS = SWEEP.points;
 // What an oracle chooses the best value for: of crossed seeds a run has one of each.
 const EACH = SWEEP.crossed_seeds ? "run" : "seed";
 
-// Metrics as they are shown.
+// Metrics in the form shown.
 const METRICS = SWEEP.metrics.map((metric) => {
   const suited = suitedUnit(metric.score, metric.mean);
   const label = metric.name.replace(metric.score, () => suited.label);  // a distance keeps its bars
@@ -28,7 +28,7 @@ const metricLabel = (m = metric) => (m.unit ? `${m.label} (${m.unit})` : m.label
 const isBetter = (a, b, m = metric) => (m.better === "higher" ? a > b : m.better === "lower" && a < b);
 const aimText = (m = metric) => (m.better === "neither" ? "neither more nor less is better" : `${m.better} is better`);
 
-// The axis a reader comes for: the numeric one of the most values, the gain before others of as many.
+// The main axis: the numeric one with the most values; on ties the gain first.
 function mainAxis() {
   const numeric = AXES.map((axis, i) => i).filter((i) => AXES[i].numeric && AXES[i].texts.length > 1);
   const isGain = (i) => (AXES[i].key === "mapper.fusion.gain" ? 1 : 0);
@@ -64,7 +64,7 @@ function freeAxes(used) {
   });
 }
 
-// Whether each value of the one meets several of the other: not where they change together.
+// Whether each value of one axis occurs with several of the other; false if they change together.
 const isCrossed = (i, k) => freeAxes([i]).includes(k) && freeAxes([k]).includes(i);
 
 // Whether the axis repeats: several points have the same value of it, as in a grid. Where all are
@@ -93,7 +93,7 @@ function holders(prefix, held, free, redraw) {
 const heldTexts = (held, free) => free.filter((i) => held[i] !== -1).map((i) => `${shortKey(AXES[i].key)} ${AXES[i].labels[held[i]]}`);
 const fits = (values, held, free) => free.every((i) => held[i] === -1 || values[i] === held[i]);
 
-// The lines of the grid along an axis, as the statistics see them: those that have a best value, or all.
+// The lines of the grid along an axis, as in the statistics: those with a best value, or else all.
 function allLinesAlong(axis) {
   return metric.lines?.[AXES[axis]?.key] ?? [];
 }

@@ -1,7 +1,7 @@
-// A metric over two axes, with the best value of the one for each value of the other.
+// A metric over two axes, with the best value of one axis for each value of the other.
 "use strict";
 const heat = { x: -1, y: -1, held: {}, cell: [0, 0] };
-// An axis of more values than fit, as that of a random sweep, goes into bins of as many points each.
+// An axis with too many values, as in a random sweep, is divided into bins with equal numbers of points.
 const MOST_ROWS = 60;
 const BINS = 12;
 const HEAT_AXES = AXES.map((axis, i) => {
@@ -20,7 +20,7 @@ function initHeat() {
   const axes = heatAxes();
   const crossed = axes.some((i) => axes.some((k) => isCrossed(i, k)));
   if (axes.length < 2 || (!crossed && !axes.some((i) => HEAT_AXES[i].binned))) { byId("heat-section").remove(); return; }
-  heat.y = mainAxis();  // its best value is the line; up is more
+  heat.y = mainAxis();  // its best values form the line; larger values are at the top
   heat.x = axes.find((i) => isCrossed(i, heat.y)) ?? axes.find((i) => i !== heat.y);
   changed.push(drawHeat);
   themeListeners.push(drawHeat);  // also for paper
@@ -49,7 +49,7 @@ function heatCells(free) {
   return cells;
 }
 
-// For each column the row that is best, and if the statistics computed it, the ends of its interval.
+// For each column the best row and, if the statistics computed it, the ends of its interval.
 function bestOfColumns(cells) {
   const lines = AXES[heat.y].numeric ? linesAlong(heat.y) : [];
   const numberRow = (value) => AXES[heat.y].numbers.reduce((best, v, k, all) => (Math.abs(v - value) < Math.abs(all[best] - value) ? k : best), 0);
@@ -63,7 +63,7 @@ function bestOfColumns(cells) {
   });
 }
 
-// The better the yellower; of what has no better side, the more.
+// Better is yellower; without a better direction, higher is.
 const heatColour = (share) => (metric.better === "lower" ? 1 - share : share);
 
 // What paints it: {height, paint(context), cellAt(x, y)}. In a file no cell is chosen.
@@ -76,7 +76,7 @@ function heatPainting(cells, best, width, inFile) {
   const edge = { left: Math.min(130, 34 + TEXT_WIDTH * longest), right: 40 + 7 * Math.max(9, ...keyTexts.map((t) => t.length)), top: 10, bottom: 46 };
   const height = Math.max(160, Math.min(460, rows * 34)) + edge.top + edge.bottom;
   const [w, h] = [(width - edge.left - edge.right) / columns, (height - edge.top - edge.bottom) / rows];
-  // A few bad corners must not make all else one colour: colours follow the rank of the value.
+  // Colours follow the rank of the value, so that a few bad corners do not make everything else one colour.
   const rank = (value) => (sorted.length < 2 ? 0.5 : sorted.filter((v) => v < value).length / (sorted.length - 1));
   const shade = (value) => viridis(heatColour(rank(value)));
   const u = (c) => edge.left + c * w;
@@ -109,7 +109,7 @@ function heatPainting(cells, best, width, inFile) {
     if (!inFile) context.strokeRect(u(heat.cell[0]) + 1, v(heat.cell[1]) + 1, w - 2, h - 2);
     context.fillStyle = colour("muted");
     context.textAlign = "center";
-    // Of numbers so many are left out that they fit; names are shortened.
+    // Numbers are thinned out until they fit; names are shortened.
     const name = (text) => (AXES[heat.x].numeric ? text : shortened(text, Math.max(6, Math.floor((w - 8) / TEXT_WIDTH))));
     HEAT_AXES[heat.x].labels.map(name).forEach((text, c) => { if (c % every(columns, w, TEXT_WIDTH * text.length + 8) === 0) context.fillText(text, u(c) + w / 2, height - edge.bottom + 15); });
     context.fillText(AXES[heat.x].key, edge.left + (width - edge.left - edge.right) / 2, height - 8);
@@ -144,7 +144,7 @@ function heatSvg(cells, best, free) {
   });
 }
 
-// Where no run gave a value.
+// Marks a cell without a value.
 function crossOut(context, left, top, w, h) {
   context.strokeStyle = colour("line");
   context.lineWidth = 1;
@@ -166,7 +166,7 @@ function sayCrossedOut(context, left, top) {
   context.fillText("no result", left + 18, top + 10);
 }
 
-// A line only along numbers: names have no trend.
+// A line only along numeric axes: names have no order.
 function drawBestMarks(context, best, u, v) {
   const line = (draw) => {
     for (const [stroke, width] of [["#fff", 5], ["#d4002a", 2.5]]) {
@@ -191,7 +191,7 @@ function drawBestMarks(context, best, u, v) {
   });
 }
 
-// Least, middle and most; `sorted` by size.
+// Minimum, median and maximum; `sorted` ascending.
 const heatKeyValues = (sorted) => [0, 0.5, 1].map((share) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0);
 const heatKeyText = (value) => withUnit(rounded(value, 3));
 
@@ -208,7 +208,7 @@ function drawHeatKey(context, left, top, height, texts) {
   }
 }
 
-// One run has no interval.
+// A single run has no interval.
 function spreadOf(point) {
   const interval = isNumber(metric.low[point]) ? ` (95 % ${compact(metric.low[point])} to ${withUnit(metric.high[point])})` : "";
   const runs = POINTS[point].runs;

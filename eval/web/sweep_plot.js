@@ -1,6 +1,6 @@
-// The metric along an axis, a line a value of another; and the best value of the axis.
+// The metric along an axis, with a line for each value of another; and the axis' best value.
 "use strict";
-// Whether values lie more evenly in their logarithm, as those of `scale: log` do.
+// Whether values are more evenly spaced on a logarithmic scale, as with `scale: log`.
 function isLogarithmic({ numeric, numbers }) {
   if (!numeric || numbers.length < 3 || numbers.some((v) => v <= 0)) return false;
   const unevenness = (values) => {
@@ -13,7 +13,7 @@ const along = { axis: mainAxis(), by: -1, held: {}, logX: AXES.length > 0 && isL
 const PALETTE = ["est", "slam", "truth", "invented", "missed", "online", "muted"];
 const MOST_LINES = PALETTE.length;
 
-// As many values as can be told apart, evenly spread.
+// As many values as are distinguishable, evenly spread.
 function shownValues(axis) {
   const count = AXES[axis].texts.length;
   if (count <= MOST_LINES) return [...AXES[axis].texts.keys()];
@@ -32,7 +32,7 @@ function plotSeries(free) {
   const axis = AXES[along.axis];
   const chosen = POINTS.map((point, i) => i).filter((i) => fits(POINTS[i].values, along.held, free));
   const position = (i) => (axis.numeric ? axis.numbers[POINTS[i].values[along.axis]] : POINTS[i].values[along.axis]);
-  // Several points at one place, as where an axis is left open: a cloud, no line.
+  // Several points at one x, as where an axis is not held: drawn as a cloud, not a line.
   const crowded = new Set(chosen.map((i) => `${position(i)} ${along.by < 0 ? "" : POINTS[i].values[along.by]}`)).size < chosen.length;
   // So are points that differ in more than what is drawn, as those of a random sweep or of named variants.
   const isAlike = (points, i) => (AXES[i].numeric ? monotone(points, along.axis, i) : new Set(points.map((point) => POINTS[point].values[i])).size < 2);
@@ -115,7 +115,7 @@ function whyMissing(points) {
   return some === 0 ? " (no run failed: the score has no value there)" : some === points.length ? " (see Failed runs)" : " (see Failed runs; elsewhere the score has no value)";
 }
 
-// Which values have no part in it, or why there is none.
+// Which values are excluded from it, or why there is none.
 function missingText(axis) {
   const all = allLinesAlong(along.axis);
   const why = (lines) => whyMissing(lines.flatMap((line) => line.left_out));
@@ -139,7 +139,7 @@ const hasUnlikeSeeds = (line) => new Set(line.points.map((i) => POINTS[i].runs))
 const oracleOf = (line) => (line.to_oracle ? "the oracle's run (mapper.fusion.mode) of the same seed and other settings" : `the best value of each ${EACH}`);
 const oraclesOf = (lines) => [...new Set(lines.filter((line) => line.best !== undefined).map(oracleOf))].join(", or, where a run of the oracle is missing, against ");
 
-// What the table says as numbers, a row a value, for who goes on with them.
+// The table's content as numbers, one row per value, for further use.
 function csvOfBest(lines, axis) {
   const unit = metric.unit ? ` (${metric.unit})` : "";
   const heads = ["held", axis.key, `mean${unit}`, `95 % low${unit}`, `95 % high${unit}`, "p (Holm)", "best in resamples", `regret${unit}`, "regret to", "is best", "best 95 % low", "best 95 % high", "seeds"];

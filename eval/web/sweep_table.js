@@ -29,7 +29,7 @@ function columnsOf(what) {
     }))];
 }
 
-// As a cell shows it.
+// The text of a cell.
 const shownText = (column, row) => column.text?.(row) ?? (column.numeric ? compact(column.at(row)) : String(column.at(row) ?? "–"));
 
 // "0.5", "<0.1", ">= 3", "0.2..0.4" for numbers, where a number is also found as it is shown; part of the text for texts,
@@ -73,7 +73,7 @@ function rowsShown(columns) {
   const rows = [...Array(count).keys()].filter((row) => filters.every(({ column, test }) => test(column.at(row), shownText(column, row))));
   const { at, numeric } = columns[table.sort] ?? columns[0];
   const sign = table.down ? -1 : 1;
-  // Missing values last, whichever way.
+  // Missing values last, in either direction.
   return rows.sort((a, b) => {
     const [x, y] = [at(a), at(b)];
     if (x === null || y === null) return (x === null) - (y === null) || a - b;
