@@ -29,8 +29,8 @@ struct Errand {
   std::vector<Cell> goals;
 };
 
-// For each start, goals reachable in the true map. Starts without a goal that is far enough are
-// drawn again, a limited number of times.
+// Random starts, each with random goals that are far enough away; whether paths exist is checked
+// later. Starts without such a goal are drawn again, a limited number of times.
 std::vector<Errand> DrawErrands(const CellSet& passable, const CellSet& allowed,
                                 const NavigabilityOptions& options) {
   std::vector<Cell> cells;

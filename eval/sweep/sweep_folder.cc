@@ -155,7 +155,7 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
   }
 }
 
-// The list "A, B" of `key`; empty if an earlier version did not write it.
+// The list "A, B" of `key`; "unknown" if an earlier version did not write it.
 std::string ListIn(const Environment& environment, const std::string& key) {
   const auto found = environment.find(key);
   return found != environment.end() ? found->second : "unknown";
