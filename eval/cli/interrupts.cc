@@ -86,8 +86,7 @@ void CatchInterrupts() {
   sem_init(&signalled, 0, 0);
   try {
     std::thread(EndWhenSignalled).detach();
-  } catch (
-      const std::system_error&) {  // no thread available: only progress reports end the program
+  } catch (const std::system_error&) {  // no thread: only progress reports end the program
   }
   // With SIGXFSZ ignored, write() fails at `ulimit -f` as on a full disk.
   std::signal(SIGXFSZ, SIG_IGN);

@@ -57,16 +57,16 @@ struct Comparison {
   std::vector<std::string> paired_by;       // the axes whose values make a pair
   std::vector<DifferentSetting> different;  // axes of both that are not among them
   int pairs = 0;                            // number of pairs that count
-  int units =
-      0;  // sample size of the tests: pairs with the same seed are averaged and count as one
-  std::vector<std::string>
-      crossed_seeds;  // crossed seed axes; the units are as many as the smallest has (SeedUnits)
-  int runs_a = 0;     // runs that meet the conditions and did not fail
+  // Sample size of the tests: pairs with the same seed are averaged and count as one.
+  int units = 0;
+  // Crossed seed axes; the units are as many as the smallest has (SeedUnits).
+  std::vector<std::string> crossed_seeds;
+  int runs_a = 0;  // runs that meet the conditions and did not fail
   int runs_b = 0;
   int unpaired_a = 0;  // of these, without a partner on the other side
   int unpaired_b = 0;
-  int repeated_seeds =
-      0;  // seeds not counted because they gave the same as another one in every score
+  // Seeds not counted because they gave the same as another one in every score.
+  int repeated_seeds = 0;
   std::vector<MetricComparison> metrics;  // with at least one pair in which both are defined
   std::vector<std::string> undefined;     // scores undefined in every pair on one side or the other
   // With `--metric all`: not tested, because neither direction is better.

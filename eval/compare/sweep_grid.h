@@ -42,12 +42,12 @@ SeedUnits UnitsOf(const std::vector<std::string>& seeds);
 // One line of the grid along a numeric axis, all other axes held.
 struct GridLine {
   std::vector<std::size_t> points;  // by ascending value of the axis
-  std::vector<std::size_t>
-      left_out;  // points of the line without a value, because all their runs failed
+  // Points of the line without a value, because all their runs failed.
+  std::vector<std::size_t> left_out;
   // Over the seeds that all `points` have; empty if there are none, or fewer than two points.
   std::optional<BestSetting> best;
-  std::size_t seeds =
-      0;  // number of seeds for `best`; of crossed seeds, the number of the smallest axis
+  // Number of seeds for `best`; of crossed seeds, the number of the smallest axis.
+  std::size_t seeds = 0;
   std::vector<double> mean_regret_of_seed;  // by point: mean loss against the oracle of each seed
   // The oracle is the run of the same seed and other settings with `mapper.fusion.mode: oracle`;
   // else, where a point has none of one of the seeds, the best point of the seed.

@@ -72,8 +72,8 @@ MountFit SolveMount(const std::vector<HandEye>& equations, bool with_position) {
     g_position += equation.of_position.transpose() * equation.value;
     g_heading += equation.of_heading.transpose() * equation.value;
   }
-  Eigen::Matrix2d position_covariance =
-      Eigen::Matrix2d::Zero();  // zero: the position is taken to be 0
+  // Zero: the position is taken to be 0.
+  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();
   if (with_position) {
     constexpr double kNear = kStretchErrorM * kStretchErrorM / (kMountNearM * kMountNearM);
     position_covariance = (h_position + kNear * Eigen::Matrix2d::Identity()).inverse();

@@ -14,8 +14,8 @@ namespace {
 
 // Possible error of a camera mount that was assumed to be level.
 constexpr double kFitsRad = RadFromDeg(10.0);
-constexpr double kConstantShare =
-    1.0 / 3.0;  // of the error, left after removing a constant rotation
+// Largest share of the error left after removing a constant rotation.
+constexpr double kConstantShare = 1.0 / 3.0;
 
 using Rotations = std::vector<Eigen::Quaterniond>;
 

@@ -68,8 +68,8 @@ Pose2 OntoLattice(const CellSet& true_walls, const std::vector<Eigen::Vector2d>&
                    WrapAngle(0.5 * kPi * std::round(truth_from_cells.yaw_rad / (0.5 * kPi)))};
   const Eigen::Vector2d shift_cells = (truth_from_cells * middle - turn * middle) / resolution_m;
   Pose2 best;
-  std::pair<int, double> best_score{
-      -1, 0.0};  // number of cells on walls; on ties, minus the distance from `truth_from_cells`
+  // Number of cells on walls; on ties, minus the squared distance from `truth_from_cells`, cells^2.
+  std::pair<int, double> best_score{-1, 0.0};
   for (int dx = -1; dx <= 1; ++dx) {
     for (int dy = -1; dy <= 1; ++dy) {
       const Eigen::Vector2d whole(std::round(shift_cells.x()) + dx,

@@ -34,8 +34,8 @@ std::vector<fs::path> FilesAt(const fs::path& path) {
     for (const auto& entry : fs::directory_iterator(Resolved(path), error)) {
       files.push_back(entry.path());
     }
-    std::sort(files.begin(),
-              files.end());  // so that messages do not depend on the file system's order
+    // So that messages do not depend on the file system's order.
+    std::sort(files.begin(), files.end());
     return files;
   }
   const fs::path absolute = fs::absolute(path);

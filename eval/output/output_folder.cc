@@ -176,8 +176,8 @@ OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superse
     throw InputError(path, "cannot be created: " + error.code().message());
   }
   try {
-    RequireUsable(target_, work_, path,
-                  force);  // again: another program may have written it meanwhile
+    // Again: another program may have written it meanwhile.
+    RequireUsable(target_, work_, path, force);
   } catch (...) {
     fs::remove_all(work_);
     ::close(lock_);

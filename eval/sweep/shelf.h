@@ -34,8 +34,8 @@ class Shelf {
  private:
   std::size_t capacity_;
   std::mutex mutex_;
-  std::list<std::pair<std::string, std::shared_ptr<const Item>>>
-      items_;  // most recently used first
+  // Most recently used first.
+  std::list<std::pair<std::string, std::shared_ptr<const Item>>> items_;
 };
 
 }  // namespace depthgrid

@@ -159,8 +159,8 @@ class Engine {
     try {
       NamingPlaces(plan_.PlaceOfKey(), [&] {
         ExperimentOptions options = plan_.OptionsOf(run);
-        RequireSound(options,
-                     plan_.PlaceOfKey());  // its message is more helpful than a later failure
+        // Its message is more helpful than a later failure.
+        RequireSound(options, plan_.PlaceOfKey());
         if (!scans.failure.empty()) throw InputError("", scans.failure);
         options = Completed(options, scans.world->scene);
         const auto truth = inputs_.TruthOf(options);

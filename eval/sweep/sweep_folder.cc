@@ -82,8 +82,8 @@ void RequireSame(const std::string& place, const Environment& there, const Envir
                  const std::vector<std::string>& respects, const char* remedy) {
   for (const std::string& respect : respects) {
     const auto there_is = there.find(respect), here_is = here.find(respect);
-    if (there_is == there.end() || here_is == here.end())
-      continue;  // written by an earlier version
+    // Written by an earlier version.
+    if (there_is == there.end() || here_is == here.end()) continue;
     if (there_is->second == here_is->second) continue;
     const std::string what = respect == "sweep"        ? "another sweep"
                              : respect == "experiment" ? "a sweep of another experiment"
