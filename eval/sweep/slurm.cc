@@ -45,6 +45,17 @@ CommandOutput OutputOf(const std::string& command) {
   return output;
 }
 
+// What sbatch --parsable prints, "ID" or "ID;CLUSTER", among lines of a site's plugins.
+std::optional<std::string> JobIdIn(const std::string& text) {
+  std::optional<std::string> id;
+  for (const TextRow& row : SplitRows(text)) {
+    if (row.fields.size() != 1) continue;
+    const std::string_view word = row.fields[0].substr(0, row.fields[0].find(';'));
+    if (ParseNumber(word)) id = std::string(word);
+  }
+  return id;
+}
+
 std::string JobList(const std::string& folder) { return folder + "/slurm/jobs.txt"; }
 
 // Queries Slurm's queue; tolerates temporary failures.
@@ -99,11 +110,9 @@ class Submission {
         OutputOf(fmt::format("sbatch --parsable --array={} --job-name={} --output={} {} {}",
                              ArrayText(parts), ShellWord("depthgrid-" + job_.title),
                              ShellWord(LogPattern()), job_.options, ShellWord(Script())));
-    const std::string id = sbatch.text.substr(0, sbatch.text.find_first_of(";\n"));
-    if (!sbatch.succeeded || !ParseNumber(id)) {
-      throw std::runtime_error("sbatch refused: " + sbatch.text);
-    }
-    job_ids_.insert(id);
+    const std::optional<std::string> id = JobIdIn(sbatch.text);
+    if (!sbatch.succeeded || !id) throw std::runtime_error("sbatch refused: " + sbatch.text);
+    job_ids_.insert(*id);
     std::string list;
     for (const std::string& known : job_ids_) list += known + "\n";
     WriteFile(JobList(job_.folder), list);

@@ -31,7 +31,8 @@ for task in $(eval echo "$tasks" | tr , ' '); do
   SLURM_ARRAY_TASK_ID=$task PATH=/usr/bin:/bin "$PLAYED/bin/task" "$word" \
     > "$(echo "$log" | sed "s/%%/%/g; s/%A/7/; s/%a/$task/")" 2>&1
 done
-echo 7
+echo 'sbatch: info: 3 jobs of yours are queued' >&2
+echo '7;cluster'
 )sh";
 
 class SlurmProgram : public ProgramTest {
