@@ -234,16 +234,29 @@ def settings_of(number, hard):
     return {name: chance.choice(values) for name, values in drawn}
 
 
+def refuse(what):
+    print(f"random_buildings.py: {what}", file=sys.stderr)
+    return 2
+
+
 def main():
     own = (sys.argv[1:] + ["--"]).index("--")
     arguments, more = sys.argv[1:own + 1], sys.argv[own + 2:]
     hard = "--hard" in arguments
     arguments = [a for a in arguments if a != "--hard"]
     if len(arguments) != 4:
-        sys.exit(__doc__)
-    program, folder = os.path.abspath(arguments[0]), arguments[1]
-    first, count = int(arguments[2]), int(arguments[3])
-    os.makedirs(folder, exist_ok=True)
+        print(__doc__, file=sys.stderr)
+        return 2
+    program, folder, *numbers = arguments
+    if not os.access(program, os.X_OK):
+        return refuse(f"{program}: is no program (./dev build laser_accuracy)")
+    if not all(number.isdecimal() for number in numbers):
+        return refuse(f"FIRST COUNT: are '{' '.join(numbers)}', must be whole numbers")
+    program, first, count = os.path.abspath(program), int(numbers[0]), int(numbers[1])
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        return refuse(f"{folder}: {error.strerror}")
     online, final, priors = [], [], []
     for number in range(first, first + count):
         name = f"{folder}/w{number}"
@@ -254,18 +267,21 @@ def main():
         done = subprocess.run([program, "--worlds", f"w{number}", "--seeds", "2", "--threads", "1", *options, *more],
                               cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            sys.exit(done.stderr)
-        for seed, prior, on, at_end in re.findall(r"seed +(\d+) prior ([\d.]+)/\S+ online ([\d.]+)/\S+ max \S+ final ([\d.]+)/",
-                                                 done.stdout):
-            print(f"w{number}", *options, f"seed {seed} prior {prior} online {on} final {at_end}", flush=True)
+            return refuse(done.stderr.strip())
+        of_seed = r"seed +(\d+) prior ([\d.]+)/\S+ online ([\d.]+)/\S+ max \S+ final ([\d.]+)/([\d.]+)"
+        for seed, prior, on, at_end, ate in re.findall(of_seed, done.stdout):
+            print(f"w{number}", *options, f"seed {seed} prior {prior} online {on} final {at_end} ate {ate}", flush=True)
             priors.append(float(prior))
             online.append(float(on))
             final.append(float(at_end))
+    if not priors:
+        return refuse("no building has room for a way")
     off = np.array([priors, online, final])
     print(f"{len(priors)} runs, mean of prior {off[0].mean():.4f} online {off[1].mean():.4f} final {off[2].mean():.4f}; "
           f"median {np.median(off[0]):.4f} {np.median(off[1]):.4f} {np.median(off[2]):.4f}; worse than the prior by more "
           f"than 1 cm: online {int((off[1] > off[0] + 0.01).sum())}, final {int((off[2] > off[0] + 0.01).sum())}")
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -19,4 +19,10 @@ Eigen::Matrix3d WithEigenvaluesAtLeast(const Eigen::Matrix3d& matrix, double lea
   return axes.vectors * axes.values.cwiseMax(least).asDiagonal() * axes.vectors.transpose();
 }
 
+std::optional<Eigen::Matrix3d> InverseIfPositive(const Eigen::Matrix3d& matrix) {
+  const SymmetricEigen axes = EigenOf(matrix);
+  if (!(axes.values[0] > 0.0)) return std::nullopt;
+  return axes.vectors * axes.values.cwiseInverse().asDiagonal() * axes.vectors.transpose();
+}
+
 }  // namespace depthgrid

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 namespace depthgrid {
 
@@ -16,6 +17,9 @@ SymmetricEigen EigenOf(const Eigen::Matrix3d& matrix);
 
 // a v = value b v, for symmetric a and positive definite b; here vectors have v^T b v = 1.
 SymmetricEigen GeneralizedEigenOf(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b);
+
+// The inverse; empty where an eigenvalue is not positive, as of information without a direction.
+std::optional<Eigen::Matrix3d> InverseIfPositive(const Eigen::Matrix3d& matrix);
 
 // The matrix with eigenvalues below `least` raised to it.
 Eigen::Matrix3d WithEigenvaluesAtLeast(const Eigen::Matrix3d& matrix, double least);

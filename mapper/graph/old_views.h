@@ -7,6 +7,9 @@
 
 namespace depthgrid {
 
+// Range at which surfaces are seen from a place: how far beyond it old frames are looked for.
+constexpr double kSightM = 6.0;
+
 // Positions of frames before `end` within `reach_m` of a pose that together show what can be seen
 // there: those with a scan, thinned.
 std::vector<int> OldFrames(const std::vector<MappedFrame>& frames, int end, const Pose2& around,

@@ -46,6 +46,16 @@ Scan WithinSight(Scan scan) {
   return scan;
 }
 
+std::vector<int> EvenlySpread(const std::vector<int>& positions, int most) {
+  const int all = static_cast<int>(positions.size());
+  if (all <= most) return positions;
+  std::vector<int> spread;
+  for (int k = 0; k < most; ++k) {
+    spread.push_back(positions[static_cast<std::size_t>((all - 1) * k / (most - 1))]);
+  }
+  return spread;
+}
+
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options) {
   return FramesAround(frames, middle, options, 0, static_cast<int>(frames.size()));
@@ -59,16 +69,10 @@ std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle
   for (int i = first; i <= last; ++i) {
     if (frames[static_cast<std::size_t>(i)].scan) with_scan.push_back(i);
   }
-  const int most = static_cast<int>(with_scan.size());
-  const int count = std::min(options.max_scans, most);
-  if (count == 1) {
+  if (std::min(options.max_scans, static_cast<int>(with_scan.size())) == 1) {
     return {frames[static_cast<std::size_t>(middle)].scan ? middle : with_scan[0]};
   }
-  std::vector<int> members;
-  for (int k = 0; k < count; ++k) {
-    members.push_back(with_scan[static_cast<std::size_t>((most - 1) * k / (count - 1))]);
-  }
-  return members;
+  return EvenlySpread(with_scan, options.max_scans);
 }
 
 OccupancyMap DrawPlace(const std::vector<MappedFrame>& frames, const std::vector<int>& members,

@@ -30,6 +30,9 @@ inline const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
   return FrameAt(frames, i).map_from_base;
 }
 
+// At most `most` of the positions (2 or more), evenly spread, with the first and the last.
+std::vector<int> EvenlySpread(const std::vector<int>& positions, int most);
+
 // Indices of the mapped frames of a place, in order of time; only those whose scans are stored.
 std::vector<int> FramesAround(const std::vector<MappedFrame>& frames, int middle,
                               const PlaceOptions& options);

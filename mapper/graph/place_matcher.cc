@@ -135,14 +135,12 @@ bool PlaceMatcher::Refine(const std::vector<MappedFrame>& frames, SurfelMap& fir
   if (match.explained < options_.min_explained) return false;
   // The covariance from eigenvalues: with an unobserved direction, a plain inverse may have
   // negative variances from rounding.
-  const SymmetricEigen known = EigenOf(match.information / kOverconfidence);
-  if (!(known.values[0] > 0.0)) return false;
-  const Eigen::Matrix3d covariance =
-      known.vectors * known.values.cwiseInverse().asDiagonal() * known.vectors.transpose();
+  const auto covariance = InverseIfPositive(match.information / kOverconfidence);
+  if (!covariance) return false;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> planar;
-  planar.computeDirect(covariance.topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
+  planar.computeDirect(covariance->topLeftCorner<2, 2>(), Eigen::EigenvaluesOnly);
   const double sigma_m = std::sqrt(planar.eigenvalues()[1]);
-  const double sigma_rad = std::sqrt(covariance(2, 2));
+  const double sigma_rad = std::sqrt((*covariance)(2, 2));
   const bool is_known =
       sigma_m <= options_.max_sigma_m && sigma_rad <= RadFromDeg(options_.max_sigma_deg);
   if (!is_known) return false;

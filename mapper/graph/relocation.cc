@@ -16,8 +16,6 @@ constexpr int kUsualFrames = 1000;
 // Rate of the running mean recent_share_: about ten frames.
 constexpr double kNewShare = 0.1;
 constexpr int kFramesToJudge = 15;
-// Added to the window: range at which surfaces are seen from within it.
-constexpr double kSightM = 6.0;
 // Most points of the search; more give the same result.
 constexpr std::size_t kMostPoints = 400;
 

@@ -6,56 +6,56 @@
 #include <cmath>
 
 #include "mapper/core/symmetric_eigen.h"
+#include "mapper/fuse/fusion.h"
 #include "mapper/graph/old_views.h"
 #include "mapper/graph/place.h"
 
 namespace depthgrid {
 namespace {
 
-// A pose is known again at this share of what is unsure.
+// The limits were chosen together; what loosening those of the acceptance costs is in
+// docs/tried.md, "After a blind stretch".
+
+// Share of unsure_m at which a pose is known again.
 constexpr double kSureShare = 0.5;
-// There must have been a map to come back to.
+// Fewest mapped frames before a stretch: there must be a map to return to.
 constexpr int kFewestFrames = 30;
-// What was drawn on such a way after the stretch has come to be the map itself.
+// Path length after the largest sigma at which the search is given up.
 constexpr double kLongestWayM = 3.0;
-// Looks are so far apart.
+// Spacing of searches along the path.
 constexpr double kLookEveryM = 0.05;
 constexpr double kLookEveryRad = 0.05;
-// Tries are so far apart along the way, within a match's reach of each other, and no farther off
-// than this.
+// Spacing of the start poses, within the reach of a match (SurfelMatchOptions::gate_m), and the
+// largest offset of one.
 constexpr double kTryEveryM = 0.1;
 constexpr double kFarthestM = 1.5;
-constexpr std::size_t kMostTries = 31;
-// How far a match may go from a try.
+constexpr auto kMostTries = static_cast<std::size_t>(2.0 * kFarthestM / kTryEveryM + 1.5);
+// Prior of the match from a start pose: m, m, rad.
 const Eigen::Vector3d kTrySigma(0.05, 0.05, 0.02);
-// A slide is found where what is seen tells where along the way it is.
+// Largest sigma of a position by the match alone.
 constexpr double kKnownM = 0.03;
-// Less, the match finds by itself.
+// Smaller offsets are within reach of an ordinary match.
 constexpr double kLeastOffM = 0.08;
-// What was mapped before the stretch must explain such a share of what it explains in ordinary
-// times, and where the frame was matched no more than this share of that (docs/tried.md, "After a
-// blind stretch").
+// Share of a scan that the map from before the stretch must explain at the slide, relative to the
+// usual share; and the most it may explain where the frame was matched, relative to that.
 constexpr double kExplainedThere = 0.9;
 constexpr double kExplainedHere = 0.6;
-// Nor must it explain more than this elsewhere, so far off.
+// Share of it that a pose farther than kElsewhereM from the slide may reach.
 constexpr double kExplainedElsewhere = 0.85;
 constexpr double kElsewhereM = 0.15;
-// So many looks in a row must find it, to this.
+// Consecutive searches that must find the slide, within kConsentM.
 constexpr int kConsenting = 2;
 constexpr double kConsentM = 0.05;
-// The scans since the stretch that are laid over old ones, at most.
+// Most scans since the stretch that are compared with old ones.
 constexpr int kMostScans = 16;
-// Old frames are looked for so far around.
-constexpr double kSightM = 6.0;
-// Of what old and new scans both saw this share must agree.
+// Least agreement of what old and new scans both saw.
 constexpr double kAgreement = 0.98;
-// Farther off than SLAM's errors let expect, the precise match must confirm the place, and as it is
-// less than this must agree.
+// For slides beyond the window: largest agreement of what both saw at the estimate as it is.
 constexpr double kContradicted = 0.9;
 
 struct Try {
   double off_m = 0.0;
-  double share = 0.0;  // that what was mapped before the stretch explains
+  double share = 0.0;  // of the scan, explained by the map from before the stretch
   Pose2 map_from_base;
 };
 
@@ -80,28 +80,18 @@ struct Tries {
   }
 };
 
-// The worst that a position is known to by this information alone, in base axes.
 bool KnowsPosition(const Eigen::Matrix3d& information) {
-  const SymmetricEigen known = EigenOf(information);
-  if (!(known.values[0] > 0.0)) return false;
-  const Eigen::Matrix3d covariance =
-      known.vectors * known.values.cwiseInverse().asDiagonal() * known.vectors.transpose();
-  return std::sqrt(std::max(covariance(0, 0), covariance(1, 1))) <= kKnownM;
+  const auto covariance = InverseIfPositive(information);
+  return covariance && std::sqrt(std::max((*covariance)(0, 0), (*covariance)(1, 1))) <= kKnownM;
 }
 
-// At most kMostScans of them, evenly spread.
+// Frames from `begin` on whose scans are stored, evenly spread.
 std::vector<int> ScansFrom(const std::vector<MappedFrame>& frames, int begin) {
   std::vector<int> with_scan;
   for (int i = begin; i < static_cast<int>(frames.size()); ++i) {
     if (FrameAt(frames, i).scan) with_scan.push_back(i);
   }
-  const int count = static_cast<int>(with_scan.size());
-  if (count <= kMostScans) return with_scan;
-  std::vector<int> spread;
-  for (int k = 0; k < kMostScans; ++k) {
-    spread.push_back(with_scan[static_cast<std::size_t>(k * (count - 1) / (kMostScans - 1))]);
-  }
-  return spread;
+  return EvenlySpread(with_scan, kMostScans);
 }
 
 }  // namespace
@@ -140,19 +130,19 @@ std::optional<SlideSearch::Slide> SlideSearch::Found(const std::shared_ptr<const
                                                      ReferenceMap& reference) const {
   const Stretch& stretch = *stretch_;
   const double here = reference.ShareSeenBefore(scan, map_from_base, stretch.begin);
-  if (here > kExplainedHere) return std::nullopt;  // nowhere more than all
+  if (here > kExplainedHere) return std::nullopt;  // no pose explains more than 1
   const double half_m = std::min(options_.window_sigmas * stretch.sigma_m, kFarthestM);
-  const Eigen::Matrix3d covariance = kTrySigma.cwiseProduct(kTrySigma).asDiagonal();
+  const Eigen::Matrix3d covariance = Squared(kTrySigma);
   Tries tries;
   for (int k = 0; k < static_cast<int>(kMostTries); ++k) {
     const double off_m = -half_m + k * kTryEveryM;
     if (off_m > half_m) break;
-    const Eigen::Vector2d at = map_from_base.translation() + off_m * stretch.along;
+    const Eigen::Vector2d at = map_from_base.translation() + off_m * stretch.along_in_map;
     const Pose2 start{at.x(), at.y(), map_from_base.yaw_rad};
     const MatchResult match = reference.Match(scan, {start, covariance});
     if (!match.found || !KnowsPosition(match.information)) continue;
     const Eigen::Vector2d moved = match.map_from_base.translation() - map_from_base.translation();
-    tries.all[tries.count++] = {moved.dot(stretch.along),
+    tries.all[tries.count++] = {moved.dot(stretch.along_in_map),
                                 reference.ShareSeenBefore(scan, match.map_from_base, stretch.begin),
                                 match.map_from_base};
   }
@@ -165,7 +155,7 @@ std::optional<SlideSearch::Slide> SlideSearch::Found(const std::shared_ptr<const
   return Slide{best->off_m, best->map_from_base};
 }
 
-// What is known of the newest pose begins, goes on with or ends a stretch.
+// Begins, continues or ends the stretch by the covariance of the newest pose.
 void SlideSearch::Follow(const std::vector<MappedFrame>& frames,
                          const Eigen::Matrix3d& covariance) {
   const Pose2& pose = frames.back().map_from_base;
@@ -187,7 +177,7 @@ void SlideSearch::Follow(const std::vector<MappedFrame>& frames,
   if (!is_sure_) stretch.seen_from = mapped;
   if (sigma_m > stretch.sigma_m) {
     stretch.sigma_m = sigma_m;
-    stretch.along = Eigen::Rotation2Dd(pose.yaw_rad) * axes.eigenvectors().col(1);
+    stretch.along_in_map = Eigen::Rotation2Dd(pose.yaw_rad) * axes.eigenvectors().col(1);
     stretch.way_m = 0.0;
   }
   if (stretch.way_m > kLongestWayM) stretch_.reset();
@@ -197,7 +187,7 @@ std::optional<PlanarLoop> SlideSearch::Mapped(const std::vector<MappedFrame>& fr
                                               const Eigen::Matrix3d& covariance) {
   Follow(frames, covariance);
   if (!stretch_ || stretch_->consenting < kConsenting) return std::nullopt;
-  stretch_->consenting = 0;  // refused, it is asked for anew
+  stretch_->consenting = 0;  // if refused, the searches start over
   const std::optional<PlanarLoop> loop = Confirmed(frames, *stretch_->slide);
   stretch_->slide.reset();
   if (loop) Forget();

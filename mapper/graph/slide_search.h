@@ -1,7 +1,7 @@
-// Did the estimate slide along a wall? While a scan shows one wall alone, nothing tells the way
-// along it, and SLAM's motion alone carries the pose on. What is seen after that may lie farther
-// from where the map has it than a match looks, and would be drawn a second time beside it. So the
-// scan is tried along that way (docs/math.md, "After a blind stretch").
+// Detects that the estimate slid along a wall. While a scan shows a single wall, the position along
+// it is not observed and follows SLAM's motion alone. Walls seen afterwards may then lie beyond the
+// reach of a match from where the map has them and would be drawn a second time. So the scan is
+// matched from poses along that direction too (docs/math.md, "After a blind stretch").
 #pragma once
 
 #include <Eigen/Core>
@@ -17,10 +17,11 @@ namespace depthgrid {
 
 struct SlideSearchOptions {
   bool use = true;
-  // The stretch is blind once a pose is known no better than this in some direction, and over when
-  // it is known to half of it again. A match looks 0.15 m far (SurfelMatchOptions::gate_m).
+  // A blind stretch begins where the sigma of a position reaches this in some direction, and the
+  // pose is known again at half of it. Chosen so that 2.5 sigmas are the reach of a match, 0.15 m
+  // (SurfelMatchOptions::gate_m).
   double unsure_m = 0.06;
-  // The scan is tried up to so many standard deviations away. Farther off, more is asked for.
+  // Half width of the search, in sigmas of the stretch. Slides found beyond it need more evidence.
   double window_sigmas = 3.0;
 
   void Visit(OptionsVisitor& v);
@@ -28,40 +29,39 @@ struct SlideSearchOptions {
 
 class SlideSearch {
  public:
-  // `gates` are those of loops: how well two places must fit.
+  // `gates`: how well two places must fit, as for loops.
   SlideSearch(const SlideSearchOptions& options, const LoopSearchOptions& gates,
               const OverlapOptions& overlap)
       : options_(options), overlap_(overlap), matcher_(gates, overlap) {}
 
-  // Whether Look() has to be called for a frame that was matched there.
+  // Whether Look() is to be called for a frame that was matched at this pose.
   bool Wants(const Pose2& map_from_base) const;
-  // Tries the frame's scan along the way. `usual_share` of a scan is explained in ordinary times.
-  // Ends with another match standing: match again.
+  // Matches the frame's scan from poses along the stretch's direction. `usual_share`: share of a
+  // scan that the map usually explains. Replaces the reference's last match: match again after it.
   void Look(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base, double usual_share,
             ReferenceMap& reference);
-  // After each mapped frame, the last of `frames`, with the covariance of its pose (base axes): a
-  // loop from a frame before the stretch to this one, where it is plain that the estimate slid.
+  // Call after each mapped frame, the last of `frames`, with the covariance of its pose (base
+  // axes). Returns a loop from a frame before the stretch to this one once a slide is confirmed.
   std::optional<PlanarLoop> Mapped(const std::vector<MappedFrame>& frames,
                                    const Eigen::Matrix3d& covariance);
-  // The frames were moved, or where the newest lie is not known.
+  // Call when the newest frames were moved as one or their place became unknown.
   void Forget();
 
  private:
-  // A pose at which what was mapped before the stretch explains the scan, and how far off that is.
   struct Slide {
-    double off_m = 0.0;
-    Pose2 map_from_base;
+    double off_m = 0.0;   // along the stretch's direction, from the matched pose
+    Pose2 map_from_base;  // at which the map from before the stretch explains the scan
   };
   struct Stretch {
-    int begin = 0;      // position among the mapped frames: how it lies to those before may be off
-    int seen_from = 0;  // the first frame whose pose is known again
-    double sigma_m = 0.0;  // the worst that a pose was known to, and in which direction
-    Eigen::Vector2d along = Eigen::Vector2d::Zero();
-    double way_m = 0.0;  // since then
-    Pose2 last;          // the last frame's
-    std::optional<Pose2> looked;
-    std::optional<Slide> slide;  // found by the last look
-    int consenting = 0;          // looks in a row that found it
+    int begin = 0;         // mapped frames up to the last known pose: the map to return to
+    int seen_from = 0;     // position of the first mapped frame whose pose is known again
+    double sigma_m = 0.0;  // largest of a position, and its direction
+    Eigen::Vector2d along_in_map = Eigen::Vector2d::Zero();
+    double way_m = 0.0;           // path length since then
+    Pose2 last;                   // map from base of the last frame
+    std::optional<Pose2> looked;  // and of the last search
+    std::optional<Slide> slide;   // found by that search
+    int consenting = 0;           // consecutive searches that found it
   };
   void Follow(const std::vector<MappedFrame>& frames, const Eigen::Matrix3d& covariance);
   std::optional<Slide> Found(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
@@ -72,8 +72,8 @@ class SlideSearch {
   SlideSearchOptions options_;
   OverlapOptions overlap_;
   PlaceMatcher matcher_;
-  int known_frames_ = 0;  // mapped when a pose was last well known
-  bool is_sure_ = false;  // the last frame's is
+  int known_frames_ = 0;  // number of mapped frames when a pose was last known
+  bool is_sure_ = false;  // whether the last frame's pose is known
   std::optional<Stretch> stretch_;
 };
 
