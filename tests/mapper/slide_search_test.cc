@@ -28,10 +28,12 @@ struct SlideOutcome {
   int loops = 0;
   double slid_m = 0.0;    // the estimate's error where the wall alone was seen last
   double at_end_m = 0.0;  // and of the last frame
+  double variance = 0.0;  // of all motions forward, as the mapper tells it, summed
 };
 
 // SLAM errs by `slide_m` a frame along the wall while it is seen alone, and knows that it errs.
-SlideOutcome SlideOutcomeOf(double slide_m, bool search) {
+SlideOutcome SlideOutcomeOf(double slide_m, bool search,
+                            const SlideSearchOptions& slide = SlideSearchOptions()) {
   const PlanarWorld room = RectangleWorld(0.0, 0.0, 6.0, 5.0);
   const PlanarLaser laser{
       .beams = 160, .field_of_view_rad = RadFromDeg(45), .sigma_of_range = 0.01};
@@ -43,6 +45,7 @@ SlideOutcome SlideOutcomeOf(double slide_m, bool search) {
                                .walk_rad_per_sqrt_s = 0.005};
   options.rounds.first_frames = 0;
   options.loops.search.use = LoopSearchUse::kOff;
+  options.loops.slide = slide;
   options.loops.slide.use = search;
   IncrementalMapper mapper(options, std::nullopt);
   SlideOutcome outcome;
@@ -57,6 +60,7 @@ SlideOutcome SlideOutcomeOf(double slide_m, bool search) {
     frame.slam_from_camera = CameraOf({truth.x_m, truth.y_m - slide_m * along, truth.yaw_rad}, 0.5);
     const FrameReport report = mapper.AddFrame(frame);
     outcome.loops += report.loops_accepted;
+    outcome.variance += report.motion_covariance(0, 0);
     const Pose2 estimate = BaseOf(*report.map_from_camera);
     const double error_m = (estimate.translation() - truth.translation()).norm();
     if (i == kSlideLookRound + kSlideAlongWall) outcome.slid_m = error_m;
@@ -83,6 +87,18 @@ TEST(SlideSearch, NothingChangesWhereNothingSlidFar) {
   EXPECT_EQ(with.loops, 0);
   EXPECT_EQ(with.slid_m, without.slid_m);
   EXPECT_EQ(with.at_end_m, without.at_end_m);
+}
+
+// Of a slide out of its reach the scan is tried in vain: nothing else may come of that.
+TEST(SlideSearch, WhatItTriesInVainLeavesNoTrace) {
+  SlideSearchOptions narrow;
+  narrow.window_sigmas = 0.5;
+  const SlideOutcome with = SlideOutcomeOf(0.005, true, narrow);
+  const SlideOutcome without = SlideOutcomeOf(0.005, false);
+  EXPECT_EQ(with.loops, 0);
+  EXPECT_EQ(with.at_end_m, without.at_end_m);
+  EXPECT_GT(with.variance, 0.0);
+  EXPECT_EQ(with.variance, without.variance);
 }
 
 }  // namespace
