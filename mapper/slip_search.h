@@ -1,6 +1,6 @@
 // Detects slips of wheels, or errors of SLAM's heading within a frame: the map explained the last
 // scan, suddenly explains little of this one, and would explain it at another heading
-// (docs/math.md, "Epochs").
+// (docs/math.md, "Slips").
 #pragma once
 
 #include <memory>
