@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 
 #include "mapper/core/drives.h"
 #include "mapper/core/error.h"
@@ -17,6 +18,11 @@ std::string DrawnPath(const std::string& folder) {
 }
 std::string MatchedPath(const std::string& folder) {
   return (fs::path(folder) / "matched.bin").string();
+}
+
+// A save writes the matched scans here first; until its last step ReadMapped() finds them here.
+std::string NextMatchedPath(const std::string& folder) {
+  return (fs::path(folder) / "matched.next.bin").string();
 }
 
 // Frames of prior maps get the highest negative numbers in their order, with one skipped between
@@ -36,8 +42,35 @@ std::vector<int> NumbersToStore(const std::vector<MappedFrame>& frames) {
 bool AreOfOneMap(const std::vector<StoredScan>& drawn, const std::vector<StoredScan>& matched) {
   return std::equal(drawn.begin(), drawn.end(), matched.begin(), matched.end(),
                     [](const StoredScan& a, const StoredScan& b) {
-                      return a.frame == b.frame && a.stamp_s == b.stamp_s;
+                      return a.frame == b.frame && a.stamp_s == b.stamp_s &&
+                             a.map_from_base == b.map_from_base;
                     });
+}
+
+// The matched scans at `path` if they are of the map that is drawn from `drawn`.
+std::optional<std::vector<StoredScan>> MatchedOf(const std::vector<StoredScan>& drawn,
+                                                 const std::string& path) {
+  if (!fs::exists(path)) return std::nullopt;
+  std::vector<StoredScan> matched = ReadScans(path);
+  if (!AreOfOneMap(drawn, matched)) return std::nullopt;
+  return matched;
+}
+
+// Does the last step of a save that was killed before it, or removes what it did not get to use.
+void FinishKilledSave(const std::string& folder) {
+  const std::string next = NextMatchedPath(folder);
+  if (!fs::exists(next)) return;
+  bool is_used = false;
+  try {
+    const std::vector<StoredScan> drawn = ReadScans(DrawnPath(folder));
+    is_used = !MatchedOf(drawn, MatchedPath(folder)) && MatchedOf(drawn, next);
+  } catch (const InputError&) {  // a map that cannot be read is not worth keeping
+  }
+  if (is_used) {
+    fs::rename(next, MatchedPath(folder));
+  } else {
+    fs::remove(next);
+  }
 }
 
 }  // namespace
@@ -53,23 +86,32 @@ void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& fram
     matched.push_back({numbers[i], frame.stamp_s, frame.map_from_base, frame.scan});
     same = same && frame.scan == frame.obstacles;
   }
-  // In this order the folder has a readable map at any interruption.
-  fs::remove(MatchedPath(folder));
+  FinishKilledSave(folder);
+  // scans.bin decides which map the folder has: before it is replaced the old matched.bin is read,
+  // from then on the next one.
+  const std::string next = NextMatchedPath(folder);
+  if (!same || fs::exists(MatchedPath(folder))) WriteScans(next, matched);
   WriteScans(DrawnPath(folder), drawn);
-  if (!same) WriteScans(MatchedPath(folder), matched);
+  if (same) {
+    fs::remove(MatchedPath(folder));
+    fs::remove(next);
+  } else {
+    fs::rename(next, MatchedPath(folder));
+  }
 }
 
 std::vector<MappedFrame> ReadMapped(const std::string& folder) {
   const std::vector<StoredScan> drawn = ReadScans(DrawnPath(folder));
-  const std::string matched_path = MatchedPath(folder);
-  const std::vector<StoredScan> matched =
-      fs::exists(matched_path) ? ReadScans(matched_path) : drawn;
   if (drawn.empty()) throw InputError(DrawnPath(folder), "holds no scan");
-  if (!AreOfOneMap(drawn, matched)) {
+  const std::string matched_path = MatchedPath(folder);
+  auto matched = MatchedOf(drawn, matched_path);
+  if (!matched) matched = MatchedOf(drawn, NextMatchedPath(folder));
+  if (!matched && fs::exists(matched_path)) {
     throw InputError(
         matched_path,
         "does not belong to the scans.bin beside it, which can be read without it: move it away");
   }
+  if (!matched) matched = drawn;
   std::vector<int> numbers;
   for (const StoredScan& scan : drawn) numbers.push_back(scan.frame);
   numbers = PriorNumbers(numbers);
@@ -78,7 +120,7 @@ std::vector<MappedFrame> ReadMapped(const std::string& folder) {
     frames[i].frame = numbers[i];
     frames[i].stamp_s = drawn[i].stamp_s;
     frames[i].obstacles = drawn[i].scan;
-    frames[i].scan = matched[i].scan;
+    frames[i].scan = (*matched)[i].scan;
     frames[i].map_from_base = drawn[i].map_from_base;
   }
   return frames;

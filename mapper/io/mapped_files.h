@@ -11,8 +11,8 @@
 namespace depthgrid {
 
 // Writes `mapped` of a MapperResult, or CurrentMapped(), into an existing folder, replacing an
-// earlier map. An interrupted save leaves either the old or the new map. Throws std::runtime_error
-// on a write error.
+// earlier map. A save that is killed, at any step, leaves either the old or the new map; so does a
+// power cut. Throws std::runtime_error on a write error.
 void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& frames);
 
 // The frames as PriorMap needs them: with negative numbers, one skipped between two drives. Throws

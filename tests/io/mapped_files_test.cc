@@ -3,7 +3,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <filesystem>
 
 #include "mapper/io/scan_file.h"
@@ -94,9 +96,79 @@ TEST_F(MappedFilesTest, FilesOfTwoMapsAreRefused) {
                   ": does not belong to the scans.bin beside it, which can be read without it: "
                   "move it away");
   }
+  // Scans of the same frames, as before an adjustment moved them.
+  std::vector<StoredScan> moved = ReadScans(File("scans.bin"));
+  for (StoredScan& scan : moved) scan.map_from_base.x_m += 0.01;
+  WriteScans(File("matched.bin"), moved);
+  EXPECT_NE(RefusalOf([&] { ReadMapped(folder_); }), "no error");
   std::filesystem::remove(File("matched.bin"));
   WriteMapped(folder_, {});
   EXPECT_EQ(RefusalOf([&] { ReadMapped(folder_); }), File("scans.bin") + ": holds no scan");
+}
+
+// What a map says: the ranges that are matched, or nothing for a map that cannot be read.
+std::vector<float> MatchedRangesOf(const std::string& folder) {
+  std::vector<float> ranges_m;
+  for (const MappedFrame& frame : ReadMapped(folder)) {
+    ranges_m.push_back(Unpacked(frame.scan.packed()).beams.at(0).range_m);
+  }
+  return ranges_m;
+}
+
+std::vector<MappedFrame> FramesMatchedAt(const std::vector<int>& numbers, float range_m) {
+  std::vector<MappedFrame> frames = FramesOf(numbers);
+  for (MappedFrame& frame : frames) frame.scan = ScanOfRange(range_m);
+  return frames;
+}
+
+// Ends a program that saves a map while it writes scans.bin, which is larger than matched.bin here.
+TEST_F(MappedFilesTest, AKilledSaveLeavesTheEarlierMapWhole) {
+  const std::vector<MappedFrame> earlier = FramesMatchedAt({0, 1}, 3.0F);
+  WriteMapped(folder_, earlier);
+  std::vector<MappedFrame> later = FramesMatchedAt({0, 1, 2}, 4.0F);
+  Scan wide{.beams = {}, .max_range_m = 8.0};
+  for (int i = 0; i < 1000; ++i) {
+    wide.beams.push_back({0.001F * static_cast<float>(i), 2.0F, 0.0F, 2.0F, true});
+  }
+  for (MappedFrame& frame : later) frame.obstacles = ScanArchive().Keep(wide);
+  const auto save_and_be_killed = [&] {
+    constexpr rlim_t kMostBytes = 1000;  // of a file; the signal SIGXFSZ comes beyond it
+    const rlimit limit{kMostBytes, kMostBytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    WriteMapped(folder_, later);
+  };
+  EXPECT_EXIT(save_and_be_killed(), testing::KilledBySignal(SIGXFSZ), "");
+  EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{3.0F, 3.0F}));
+  WriteMapped(folder_, later);
+  EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{4.0F, 4.0F, 4.0F}));
+}
+
+// The states between the steps of a save, each the files of two maps mixed.
+TEST_F(MappedFilesTest, EveryStepOfASaveLeavesOneOfTheMaps) {
+  namespace fs = std::filesystem;
+  const std::string of_new = folder_ + "/new";
+  fs::create_directories(of_new);
+  const auto copy_new = [&](const char* from, const char* to) {
+    fs::copy_file(fs::path(of_new) / from, File(to), fs::copy_options::overwrite_existing);
+  };
+  const std::vector<float> old_ranges(2, 3.0F), new_ranges(3, 4.0F);
+  WriteMapped(of_new, FramesMatchedAt({0, 1, 2}, 4.0F));
+  WriteMapped(folder_, FramesMatchedAt({0, 1}, 3.0F));
+  copy_new("matched.bin", "matched.next.bin");
+  EXPECT_EQ(MatchedRangesOf(folder_), old_ranges);
+  copy_new("scans.bin", "scans.bin");
+  EXPECT_EQ(MatchedRangesOf(folder_), new_ranges);
+  // Killed here, and killed again in the next save: its matched scans, not yet its drawn ones.
+  WriteMapped(of_new, FramesMatchedAt({0, 1, 2, 3}, 5.0F));
+  WriteMapped(folder_, FramesMatchedAt({0, 1, 2}, 4.0F));
+  EXPECT_FALSE(Has("matched.next.bin"));
+  copy_new("matched.bin", "matched.next.bin");
+  EXPECT_EQ(MatchedRangesOf(folder_), new_ranges);
+  // A map whose drawn scans are matched replaces one with two files.
+  WriteMapped(folder_, FramesOf({0, 1}));
+  EXPECT_FALSE(Has("matched.bin"));
+  EXPECT_FALSE(Has("matched.next.bin"));
+  EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{2.0F, 2.0F}));
 }
 
 }  // namespace
