@@ -1,5 +1,6 @@
 #include "mapper/io/file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -47,9 +48,47 @@ std::string TemporaryName(const std::string& path) {
   return fmt::format("{}.{}.{}.tmp", path, ::getpid(), counter.fetch_add(1));
 }
 
+std::function<void(std::ostream&)> Writing(std::string_view content) {
+  return [content](std::ostream& stream) {
+    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  };
+}
+
 [[noreturn]] void FailWriting(const std::string& path, int error) {
   throw std::runtime_error(
       fmt::format("{}: cannot be written: {}", path, error == 0 ? "failed" : std::strerror(error)));
+}
+
+// The error number if something was lost, else 0; some file systems cannot sync.
+int FailureToSync(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return 0;
+  const int failure = ::fsync(file) == 0 ? 0 : errno;
+  ::close(file);
+  return failure == EIO || failure == ENOSPC || failure == EDQUOT ? failure : 0;
+}
+
+void WriteBesideAndRename(const std::string& path, const std::function<void(std::ostream&)>& write,
+                          bool to_disk) {
+  const std::string temporary = TemporaryName(path);
+  const EndTask remove_half([&temporary] {
+    std::error_code ignored;
+    fs::remove(temporary, ignored);
+  });
+  errno = 0;
+  {
+    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
+    write(stream);
+    stream.close();
+    if (!stream) FailWriting(path, errno);
+  }
+  if (to_disk) {
+    if (const int failure = FailureToSync(temporary)) FailWriting(path, failure);
+  }
+  std::error_code error;
+  fs::rename(temporary, path, error);
+  if (error) FailWriting(path, error.value());
+  if (to_disk) SyncToDisk(fs::absolute(path).parent_path().string());
 }
 
 }  // namespace
@@ -95,27 +134,23 @@ std::string ReadTextFile(const std::string& path, std::size_t max_bytes) {
 }
 
 void WriteFile(const std::string& path, std::string_view content) {
-  WriteFile(path, [content](std::ostream& stream) {
-    stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  });
+  WriteFile(path, Writing(content));
+}
+
+void WriteFileToDisk(const std::string& path, std::string_view content) {
+  WriteFileToDisk(path, Writing(content));
 }
 
 void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write) {
-  const std::string temporary = TemporaryName(path);
-  const EndTask remove_half([&temporary] {
-    std::error_code ignored;
-    fs::remove(temporary, ignored);
-  });
-  errno = 0;
-  {
-    std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-    write(stream);
-    stream.close();
-    if (!stream) FailWriting(path, errno);
-  }
-  std::error_code error;
-  fs::rename(temporary, path, error);
-  if (error) FailWriting(path, error.value());
+  WriteBesideAndRename(path, write, false);
+}
+
+void WriteFileToDisk(const std::string& path, const std::function<void(std::ostream&)>& write) {
+  WriteBesideAndRename(path, write, true);
+}
+
+void SyncToDisk(const std::string& path) {
+  if (const int failure = FailureToSync(path)) FailWriting(path, failure);
 }
 
 }  // namespace depthgrid

@@ -34,4 +34,13 @@ void WriteFile(const std::string& path, std::string_view content);
 // The same for what `write` puts into the stream, so that a large file need not be in memory.
 void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write);
 
+// WriteFile() for what must survive a power cut: returns when the file is on the disk. Without
+// this, a file system may store the new name before the content, and leave an empty file in place
+// of the old one. Takes 4 ms more on an SSD (ext4; 60 files of 30 kB: 0.22 s instead of 0.005).
+void WriteFileToDisk(const std::string& path, std::string_view content);
+void WriteFileToDisk(const std::string& path, const std::function<void(std::ostream&)>& write);
+// Returns when the content of a file or the names in a folder are on the disk. Does nothing where
+// the file system cannot do that.
+void SyncToDisk(const std::string& path);
+
 }  // namespace depthgrid

@@ -255,12 +255,13 @@ void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mod
   const Eigen::Vector2d origin = map.geometry.OriginM();
   // Fifteen digits: enough for a lattice corner anywhere on earth, without a double's rounding
   // errors.
-  WriteFile(image_path.string(), internal::EncodeMapImage(map, mode));
-  WriteFile(yaml_path,
-            fmt::format("image: {}\nmode: {}\nresolution: {:.15g}\norigin: [{:.15g}, {:.15g}, 0]\n"
-                        "negate: 0\noccupied_thresh: {}\nfree_thresh: {}\n",
-                        image_path.filename().string(), NameOf(mode), map.geometry.resolution_m,
-                        origin.x(), origin.y(), written.occupied_prob, written.free_prob));
+  WriteFileToDisk(image_path.string(), internal::EncodeMapImage(map, mode));
+  WriteFileToDisk(
+      yaml_path,
+      fmt::format("image: {}\nmode: {}\nresolution: {:.15g}\norigin: [{:.15g}, {:.15g}, 0]\n"
+                  "negate: 0\noccupied_thresh: {}\nfree_thresh: {}\n",
+                  image_path.filename().string(), NameOf(mode), map.geometry.resolution_m,
+                  origin.x(), origin.y(), written.occupied_prob, written.free_prob));
 }
 
 void WriteMap(const std::string& yaml_path, const StateMap& map) {

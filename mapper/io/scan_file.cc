@@ -169,7 +169,7 @@ std::vector<StoredScan> ReadScans(const std::string& path) {
 }
 
 void WriteScans(const std::string& path, const std::vector<StoredScan>& scans) {
-  WriteFile(path, [&scans](std::ostream& stream) {
+  WriteFileToDisk(path, [&scans](std::ostream& stream) {
     std::string bytes(kMagic);
     Append(bytes, static_cast<std::uint32_t>(scans.size()));
     for (std::size_t i = 0; i < scans.size(); ++i) {
