@@ -7,6 +7,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/compare/sweep_report.h"
+#include "eval/files/one_result.h"
 #include "eval/output/output_file.h"
 #include "eval/output/output_folder.h"
 #include "eval/output/result_files.h"
@@ -100,6 +101,7 @@ void Report(const ReportArguments& arguments) {
                                            ? "is a file, must be the folder of a result"
                                            : "no such folder");
   }
+  RequireOneResult(arguments.folder);
   std::error_code not_there;
   if (arguments.output.empty() || fs::equivalent(arguments.folder, arguments.output, not_there)) {
     if (arguments.force) {

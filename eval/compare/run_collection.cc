@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "eval/files/metric_columns.h"
+#include "eval/files/one_result.h"
 #include "eval/sweep/sweep_database.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -99,6 +100,7 @@ SweepResults ReadRuns(const std::string& folder) {
   SweepResults table;
   table.folder = folder;
   for (const fs::path& run : RunFolders(folder)) {
+    RequireOneResult(run.string());
     const int number = static_cast<int>(table.rows());
     table.runs.push_back(number);
     table.run_folders.push_back(run.string());

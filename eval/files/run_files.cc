@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "eval/files/one_grid.h"
+#include "eval/files/one_result.h"
 #include "eval/files/shell_word.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
@@ -63,6 +64,7 @@ std::string MapPictureAt(const fs::path& path) {
 void RequireRunFolder(const std::string& folder) {
   std::error_code error;
   if (!fs::exists(folder, error)) throw InputError(folder, "no such folder");
+  RequireOneResult(folder);
   if (fs::exists(fs::path(folder) / "run.yaml", error)) return;
   if (fs::exists(fs::path(folder) / "depth.txt", error)) {
     throw InputError(folder,

@@ -12,7 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "eval/files/one_result.h"
 #include "mapper/core/error.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid {
 namespace {
@@ -108,6 +110,12 @@ void MoveInto(const fs::path& from, const fs::path& to) {
     } else {
       fs::rename(entry.path(), destination);
     }
+  }
+}
+
+void SyncFilesToDisk(const fs::path& folder) {
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) SyncToDisk(entry.path().string());
   }
 }
 
@@ -259,8 +267,12 @@ void OutputFolder::PutInPlace() const {
     throw std::runtime_error(target_.string() + ": is not empty any more");
   }
   RequireSameKinds(work_, target_);
+  // An older result is only given up for one that a power cut cannot take.
+  SyncFilesToDisk(work_);
+  MarkAsReplaced(target_.string());
   RemoveSuperseded();
   MoveInto(work_, target_);
+  UnmarkAsReplaced(target_.string());
 }
 
 void OutputFolder::Commit() {

@@ -39,7 +39,8 @@ class OutputFolder {
 
   // Moves the written files into place. In a folder that already has files (only with `force`, even
   // if they appeared meanwhile), files of the same name are replaced, superseded ones are removed
-  // and all others remain: a user's own files are never deleted. Throws std::runtime_error on
+  // and all others remain: a user's own files are never deleted. A program that is killed while it
+  // replaces files leaves a folder that RequireOneResult() rejects. Throws std::runtime_error on
   // failure; files not yet in place then remain where they are, and the message says where.
   void Commit();
 

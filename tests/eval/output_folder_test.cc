@@ -1,11 +1,16 @@
 #include "eval/output/output_folder.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/mount.h>
 #include <unistd.h>
 
+#include <csignal>
+
+#include "eval/files/run_files.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
+#include "tests/refusal.h"
 #include "tests/scratch.h"
 
 namespace depthgrid {
@@ -95,6 +100,27 @@ TEST_F(OutputFolderTest, ForceReplacesItsOwnNamesAndKeepsOthers) {
   EXPECT_EQ(ReadFile(Path("out/rgb/0.png")), "new");
   EXPECT_EQ(ReadFile(Path("out/rgb/9.png")), "precious");
   EXPECT_EQ(ReadFile(Path("out/mine.txt")), "precious");
+}
+
+// Killed between two files, it leaves those of two runs: no command may take them for one.
+TEST_F(OutputFolderTest, WhatWasReplacedInPartIsNoResult) {
+  const auto write = [&](const FileRule& superseded) {
+    OutputFolder folder(Path("out"), true, superseded);
+    WriteFile(folder.File("run.yaml"), "new");
+    folder.Commit();
+  };
+  fs::create_directory(Path("out"));
+  WriteFile(Path("out/run.yaml"), "old");
+  RequireRunFolder(Path("out"));
+  const auto replace_and_be_killed = [&] {
+    write([](const fs::path&) { return std::raise(SIGKILL) != 0; });
+  };
+  EXPECT_EXIT(replace_and_be_killed(), testing::KilledBySignal(SIGKILL), "");
+  EXPECT_THAT(RefusalOf([&] { RequireRunFolder(Path("out")); }),
+              testing::HasSubstr("files of two results: a command that replaced one was killed"));
+  write({});
+  RequireRunFolder(Path("out"));
+  EXPECT_EQ(Everything(), (Names{"out", "out/run.yaml"}));
 }
 
 TEST_F(OutputFolderTest, WhatCannotTakeItsPlaceIsKept) {
