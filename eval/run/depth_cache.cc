@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <fstream>
 #include <set>
 #include <string_view>
@@ -78,24 +79,61 @@ bool IsEntry(const fs::path& path) {
   return ContentHash::IsHex(name);
 }
 
+// PID-THREAD after an entry's name: an entry that is being written.
+std::string EndingOfHalf() {
+  const std::size_t thread = std::hash<std::thread::id>{}(std::this_thread::get_id());
+  return "." + std::to_string(::getpid()) + "-" + std::to_string(thread);
+}
+
+bool IsHalf(const fs::path& path) {
+  const std::string ending = path.extension().string();
+  return ending.find('-') != std::string::npos &&
+         ending.find_first_not_of("-0123456789", 1) == std::string::npos && IsEntry(path.stem());
+}
+
+// The files in the cache's folders. A folder that cannot be read is not this user's, and hides no
+// other.
+std::vector<fs::directory_entry> FilesIn(const fs::path& root) {
+  std::vector<fs::directory_entry> files;
+  std::error_code error;
+  for (auto folder = fs::directory_iterator(root, error);
+       !error && folder != fs::directory_iterator(); folder.increment(error)) {
+    std::error_code unreadable;
+    const bool is_own = ContentHash::IsHex(folder->path().filename().string()) &&
+                        fs::is_directory(folder->symlink_status(unreadable));
+    if (!is_own) continue;
+    for (auto file = fs::directory_iterator(folder->path(), unreadable);
+         !unreadable && file != fs::directory_iterator(); file.increment(unreadable)) {
+      files.push_back(*file);
+    }
+  }
+  return files;
+}
+
 // The user chose the folder and may keep other files with this extension in it (ICL-NUIM's have
 // it): only files that a cache wrote may be removed.
 std::vector<Entry> EntriesIn(const fs::path& root) {
   std::vector<Entry> entries;
-  std::error_code error;
-  for (auto it = fs::recursive_directory_iterator(root, error);
-       !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+  for (const fs::directory_entry& file : FilesIn(root)) {
+    if (!IsEntry(file.path())) continue;
     std::error_code vanished;  // another program may have removed it
-    if (it.depth() == 0) {
-      if (!ContentHash::IsHex(it->path().filename().string())) it.disable_recursion_pending();
-      continue;
-    }
-    it.disable_recursion_pending();
-    if (!IsEntry(it->path())) continue;
-    Entry entry{it->path(), it->last_write_time(vanished), it->file_size(vanished)};
+    Entry entry{file.path(), file.last_write_time(vanished), file.file_size(vanished)};
     if (!vanished) entries.push_back(entry);
   }
   return entries;
+}
+
+// Files that killed programs did not finish. A program that is stopped for so long and continues
+// does not find its file again and stores nothing.
+void RemoveOldHalves(const fs::path& root) {
+  constexpr auto kLongestWrite = std::chrono::hours(1);
+  const auto latest = fs::file_time_type::clock::now() - kLongestWrite;
+  for (const fs::directory_entry& file : FilesIn(root)) {
+    if (!IsHalf(file.path())) continue;
+    std::error_code ignored;
+    const auto written = file.last_write_time(ignored);
+    if (!ignored && written < latest) fs::remove(file.path(), ignored);
+  }
 }
 
 }  // namespace
@@ -110,6 +148,7 @@ DepthCache::DepthCache(const std::string& folder, const std::string& scene_hash,
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw InputError(folder, "cannot be used as a cache: " + error.message());
+  RemoveOldHalves(root_);
   for (const Entry& entry : EntriesIn(root_)) used_bytes_ += entry.bytes;
 }
 
@@ -184,11 +223,8 @@ void DepthCache::Store(const Pose3& world_from_camera, const DepthFrame& frame) 
   header.with_incidence = with_incidence ? 1 : 0;
   header.checksum = ChecksumOf(frame);
   const fs::path path = EntryOf(world_from_camera, with_incidence);
-  // Written to a temporary file, then renamed, so that readers never see a partial file. The name
-  // is unique to process and thread.
-  const std::size_t thread = std::hash<std::thread::id>{}(std::this_thread::get_id());
-  const fs::path partial =
-      path.string() + "." + std::to_string(::getpid()) + "-" + std::to_string(thread);
+  // Written to a temporary file, then renamed, so that readers never see a partial file.
+  const fs::path partial = path.string() + EndingOfHalf();
   const EndTask remove_half([&partial] {
     std::error_code ignored;
     fs::remove(partial, ignored);

@@ -21,7 +21,8 @@ class DepthCache {
  public:
   // Frames of one scene seen by one camera, in `folder`, which several programs may use at once.
   // All entries of the folder count towards `size_limit_bytes`; the least recently used are removed
-  // first.
+  // first. Entries that killed programs did not finish are removed now, once they are an hour old;
+  // folders that cannot be read are ignored.
   DepthCache(const std::string& folder, const std::string& scene_hash, const PinholeCamera& camera,
              RayIsa isa, std::uint64_t size_limit_bytes = kDefaultCacheBytes);
 

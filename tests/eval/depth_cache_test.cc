@@ -1,6 +1,11 @@
 #include "eval/run/depth_cache.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
 
 #include "mapper/core/level.h"
 #include "mapper/io/file.h"
@@ -73,6 +78,63 @@ TEST_F(DepthCacheTest, FilesOfTheUsersAreNoEntries) {
   EXPECT_EQ(Run("b", Path(0, 2), 2), 2);  // nor do they take any room
   EXPECT_EQ(Run("a", Path(0, 1), 2), 0);  // whose entry had to go
   for (const std::string& name : own) EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+}
+
+TEST_F(DepthCacheTest, HalvesOfKilledRunsGoOthersStay) {
+  namespace fs = std::filesystem;
+  EXPECT_EQ(Run("a", Path(0, 1), 8), 0);
+  const fs::path frames = fs::directory_iterator(folder_)->path();
+  const fs::path entry = fs::directory_iterator(frames)->path();
+  const std::string of_user = (frames / "0123456789abcdef.depth.bak").string();
+  const auto half = [&](const char* ending, int minutes) {
+    const std::string path = entry.string() + ending;
+    WriteFile(path, "half");
+    fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::minutes(minutes));
+    return path;
+  };
+  WriteFile(of_user, "mine");
+  fs::last_write_time(of_user, fs::file_time_type::clock::now() - std::chrono::hours(99));
+  const std::string old = half(".4711-1234567890123", 61);
+  const std::string live = half(".4712-1234567890123", 5);
+  EXPECT_EQ(Run("b", Path(0, 1), 8), 0);
+  EXPECT_FALSE(fs::exists(old));
+  EXPECT_TRUE(fs::exists(live));
+  EXPECT_TRUE(fs::exists(of_user));
+  EXPECT_EQ(Run("a", Path(0, 1), 8), 1);
+}
+
+// Entries beside folders that this user may not read count all the same.
+TEST_F(DepthCacheTest, FoldersOfOthersDoNotHideEntries) {
+  namespace fs = std::filesystem;
+  EXPECT_EQ(Run("a", Path(0, 4), 4), 0);
+  fs::permissions(folder_, fs::perms::all);
+  for (const auto& own : fs::directory_iterator(folder_)) {
+    fs::permissions(own.path(), fs::perms::all);
+  }
+  constexpr int kFoldersOfOthers = 30;  // so that some are listed before the cache's own
+  for (int i = 0; i < kFoldersOfOthers; ++i) {
+    const fs::path others = folder_ / fmt::format("{:016x}", 77 * i);
+    fs::create_directory(others);
+    fs::permissions(others, fs::perms::none);
+  }
+  const auto run_as_nobody = [&] {
+    constexpr uid_t kNobody = 65534;
+    if (::geteuid() == 0 && ::seteuid(kNobody) != 0) std::exit(99);
+    Run("b", Path(0, 4), 4);  // an entry of "a" has to go for each
+    int entries = 0;
+    for (const auto& folder : fs::directory_iterator(folder_)) {
+      std::error_code denied;
+      for (auto it = fs::directory_iterator(folder.path(), denied);
+           !denied && it != fs::directory_iterator(); ++it) {
+        ++entries;
+      }
+    }
+    std::exit(entries);
+  };
+  EXPECT_EXIT(run_as_nobody(), testing::ExitedWithCode(4), "");
+  for (const auto& own : fs::directory_iterator(folder_)) {  // so that they can be removed
+    fs::permissions(own.path(), fs::perms::all);
+  }
 }
 
 }  // namespace
