@@ -69,23 +69,34 @@ std::vector<DepthJob> JobsOf(const std::vector<ScanSet*>& sets, const std::strin
   return jobs;
 }
 
+using Images = std::vector<std::shared_ptr<const DepthImage>>;
+
+void ScanImages(const Images& images, int first, FrameScanner& scanner, ScanSet& set) {
+  for (std::size_t k = 0; k < images.size(); ++k) {
+    const std::size_t index = static_cast<std::size_t>(first) + k;
+    const SlamPose& pose = set.slam.live[index];
+    Frame frame;
+    frame.depth = images[k];
+    frame.slam_from_camera = pose.slam_from_camera;
+    frame.stamp_s = pose.stamp_s;
+    frame.slam_epoch = pose.epoch;
+    set.scans[index] = scanner.ScansOf(frame);
+  }
+}
+
 // A block of images is made in any order. Each set then reads them in order of time, because the
 // floor is tracked from frame to frame.
 void ScanBlock(DepthJob& job, int first, int count, int threads) {
-  std::vector<std::shared_ptr<const DepthImage>> images(static_cast<std::size_t>(count));
+  Images images(static_cast<std::size_t>(count));
   ForEachIndex(images.size(), threads, [&](std::size_t k) {
     images[k] = std::make_shared<const DepthImage>(job.sensor->Image(first + static_cast<int>(k)));
   });
   ForEachIndex(job.sets.size(), threads, [&](std::size_t i) {
-    for (std::size_t k = 0; k < images.size(); ++k) {
-      const std::size_t index = static_cast<std::size_t>(first) + k;
-      const SlamPose& pose = job.sets[i]->slam.live[index];
-      Frame frame;
-      frame.depth = images[k];
-      frame.slam_from_camera = pose.slam_from_camera;
-      frame.stamp_s = pose.stamp_s;
-      frame.slam_epoch = pose.epoch;
-      job.sets[i]->scans[index] = job.scanners[i].ScansOf(frame);
+    if (!job.sets[i]->failure.empty()) return;
+    try {
+      ScanImages(images, first, job.scanners[i], *job.sets[i]);
+    } catch (const std::exception& error) {  // the other sets have their own scanners
+      job.sets[i]->failure = error.what();
     }
   });
 }
@@ -97,10 +108,12 @@ void ScanJob(DepthJob& job, const ScanMakerContext& context) {
     const int count = std::min(block, frames - first);
     try {
       ScanBlock(job, first, count, context.threads);
-    } catch (const std::exception& error) {
+    } catch (const std::exception& error) {  // an image could not be made
       for (ScanSet* set : job.sets) set->failure = error.what();
-      return;
     }
+    const bool all_failed = std::all_of(job.sets.begin(), job.sets.end(),
+                                        [](const ScanSet* set) { return !set->failure.empty(); });
+    if (all_failed) return;
     for (int i = 0; i < count; ++i) context.tick();
   }
 }

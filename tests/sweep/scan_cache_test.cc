@@ -150,5 +150,30 @@ TEST_F(ScanCacheTest, OtherStampsAreOtherScans) {
   EXPECT_NE(ContentKey(fast), ContentKey(alone));
 }
 
+// One set's scanner throws: its camera is not the one of the depth images it is given.
+TEST_F(ScanCacheTest, ASetWhoseScannerFailsFailsAlone) {
+  Write("room.yaml", kPeopledRoom);
+  ExperimentOptions options;
+  options.scene = Path("room.yaml");
+  options.frames = 20;  // several blocks of images
+  options.sensor.width_px = 40;
+  options.sensor.height_px = 30;
+  const World world = LoadWorld(options, 1);
+  World other = LoadWorld(options, 1);
+  other.camera.width_px = 20;
+  ScanSet first = MakeSet(options, std::make_shared<const World>(world));
+  ScanSet broken = MakeSet(options, std::make_shared<const World>(std::move(other)));
+  ScanSet last = first, alone = first;
+  last.options.mapper.scan.beams = 99;
+  ASSERT_EQ(DepthKey(broken), DepthKey(first));
+  MakeScans({&first, &broken, &last}, {1, "", [] {}});
+  MakeScans({&alone}, {1, "", [] {}});
+  EXPECT_NE(broken.failure, "");
+  EXPECT_EQ(first.failure, "");
+  EXPECT_EQ(last.failure, "");
+  ExpectSame(first.scans, alone.scans);
+  EXPECT_NE(last.scans.back().obstacles, nullptr);
+}
+
 }  // namespace
 }  // namespace depthgrid
