@@ -2,67 +2,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 
 #include "eval/metrics/cell_maps.h"
+#include "eval/metrics/nearest_points.h"
 #include "eval/metrics/statistics.h"
-#include "mapper/core/error.h"
 
 namespace depthgrid {
 namespace {
-
-// Targets sorted into square buckets; the nearest is searched in square rings of growing size.
-class Buckets {
- public:
-  Buckets(const std::vector<Eigen::Vector2d>& targets, double size_m) : size_m_(size_m) {
-    std::vector<Cell> cells;
-    for (const Eigen::Vector2d& t : targets) cells.push_back(CellOf(t, size_m));
-    geometry_ = BoundsOf(cells, size_m);
-    members_.resize(geometry_.size());
-    for (std::size_t i = 0; i < cells.size(); ++i) {
-      members_[geometry_.Index(cells[i])].push_back(targets[i]);
-    }
-  }
-
-  double DistanceFrom(const Eigen::Vector2d& point) const {
-    const Cell centre = CellOf(point, size_m_);
-    double best_squared = std::numeric_limits<double>::infinity();
-    // Everything from ring k + 1 on is at least k buckets away.
-    for (int ring = 0;; ++ring) {
-      const double reach_m = (ring - 1) * size_m_;
-      if (ring > 0 && best_squared <= reach_m * reach_m) return std::sqrt(best_squared);
-      VisitRing(centre, ring, point, best_squared);
-    }
-  }
-
- private:
-  void VisitRing(const Cell& centre, int ring, const Eigen::Vector2d& point, double& best) const {
-    for (int y = centre.y - ring; y <= centre.y + ring; ++y) {
-      const bool whole_row = std::abs(y - centre.y) == ring;
-      for (int x = centre.x - ring; x <= centre.x + ring;
-           x += whole_row || ring == 0 ? 1 : 2 * ring) {
-        const Cell cell{x, y};
-        if (!geometry_.Contains(cell)) continue;
-        for (const Eigen::Vector2d& t : members_[geometry_.Index(cell)]) {
-          best = std::min(best, (t - point).squaredNorm());
-        }
-      }
-    }
-  }
-
-  double size_m_;
-  GridGeometry geometry_;
-  std::vector<std::vector<Eigen::Vector2d>> members_;
-};
 
 double ShareWithin(const std::vector<double>& distances_m, double limit_m) {
   const auto within = std::count_if(distances_m.begin(), distances_m.end(),
                                     [&](double d) { return d <= limit_m + kCentreSlackM; });
   return static_cast<double>(within) / static_cast<double>(distances_m.size());
 }
-
-constexpr double kBucketCells = 4.0;
 
 // Distances from each map's points in scored cells to the other map's targets.
 struct BothWays {
@@ -84,9 +36,8 @@ BothWays DistancesOf(const CellSet& true_walls, const std::vector<Eigen::Vector2
   for (const Eigen::Vector2d& p : points) {
     if (scored.Has(CellOf(p, resolution_m))) counted.push_back(p);
   }
-  const double bucket_m = kBucketCells * resolution_m;
-  return {NearestDistances(counted, true_targets, bucket_m),
-          NearestDistances(CentresOf(InBoth(true_walls, scored)), targets, bucket_m)};
+  return {NearestDistances(counted, true_targets),
+          NearestDistances(CentresOf(InBoth(true_walls, scored)), targets)};
 }
 
 // Centres, and points on the lines from each to those of its neighbours.
@@ -112,13 +63,11 @@ std::vector<Eigen::Vector2d> LinesThrough(const CellSet& walls) {
 }  // namespace
 
 std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
-                                     const std::vector<Eigen::Vector2d>& targets,
-                                     double spacing_m) {
-  Require(!targets.empty(), "a nearest point is one of at least one");
-  const Buckets buckets(targets, spacing_m);
+                                     const std::vector<Eigen::Vector2d>& targets) {
+  const NearestPoints nearest(targets);
   std::vector<double> distances_m;
   distances_m.reserve(points.size());
-  for (const Eigen::Vector2d& p : points) distances_m.push_back(buckets.DistanceFrom(p));
+  for (const Eigen::Vector2d& p : points) distances_m.push_back(nearest.DistanceFrom(p));
   return distances_m;
 }
 

@@ -12,9 +12,9 @@
 namespace depthgrid {
 
 // Euclidean distance from each point to the nearest of the targets, exact, in metres; at least one
-// target. The targets are sorted into squares of `spacing_m`, which affects only the run time.
+// target.
 std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
-                                     const std::vector<Eigen::Vector2d>& targets, double spacing_m);
+                                     const std::vector<Eigen::Vector2d>& targets);
 
 struct WallDistanceScore {
   // Santos et al. 2013: mean distance to the nearest wall of the other map ("normalised error" and
