@@ -60,12 +60,25 @@ void ReadSeeds(const Config& map, SweepAxis& axis) {
   }
 }
 
+// 0 for -0, which is the same value and would have another text.
+double WithOneZero(double value) { return value + 0.0; }
+
+constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
+
 // Removes rounding errors: 10 instead of 9.999999999999998, which nobody wants and no `--where`
 // would find.
 double WithoutRounding(double value) {
   const double plain = *ParseNumber(fmt::format("{:.12g}", value));
-  constexpr double kRoundings = 4.0 * std::numeric_limits<double>::epsilon();
   return std::abs(plain - value) <= kRoundings * std::abs(value) ? plain : value;
+}
+
+// The value at `share` of the range, as it is listed. Between ends of both signs, rounding leaves a
+// value near zero.
+double ListedAt(const AxisRange& range, double share) {
+  const double value = range.At(share);
+  const double rounding = kRoundings * std::max(std::abs(range.from), std::abs(range.to));
+  const bool is_zero = range.scale == RangeScale::kLinear && std::abs(value) <= rounding;
+  return is_zero ? 0.0 : WithoutRounding(value);
 }
 
 void ReadRange(const Config& map, SweepAxis& axis) {
@@ -78,7 +91,7 @@ void ReadRange(const Config& map, SweepAxis& axis) {
     throw InputError(axis.place,
                      fmt::format("a log range from {} to {} must lie above 0", read.from, read.to));
   }
-  const AxisRange range{read.from, read.to, read.scale,
+  const AxisRange range{WithOneZero(read.from), WithOneZero(read.to), read.scale,
                         IsWholeNumber(ExperimentOptions{}, axis.keys.front())};
   if (read.count == 0) {
     axis.range = range;
@@ -90,7 +103,7 @@ void ReadRange(const Config& map, SweepAxis& axis) {
   }
   for (int i = 0; i < read.count; ++i) {
     const double share = read.count == 1 ? 0.0 : static_cast<double>(i) / (read.count - 1);
-    axis.values.push_back({fmt::format("{}", WithoutRounding(range.At(share)))});
+    axis.values.push_back({fmt::format("{}", ListedAt(range, share))});
   }
 }
 
@@ -147,14 +160,14 @@ double AxisRange::At(double share) const {
   if (share >= 1.0) return to;
   const double value =
       scale == RangeScale::kLog ? from * std::pow(to / from, share) : from + (to - from) * share;
-  return whole ? std::round(value) : value;
+  return WithOneZero(whole ? std::round(value) : value);
 }
 
 double AxisRange::Drawn(double share) const {
   const double least = std::ceil(std::min(from, to)), most = std::floor(std::max(from, to));
   if (!whole || least > most) return At(share);
   const AxisRange around{least - 0.5, most + 0.5, scale};
-  return std::clamp(std::round(around.At(share)), least, most);
+  return WithOneZero(std::clamp(std::round(around.At(share)), least, most));
 }
 
 bool SweepAxis::IsSeed() const { return std::all_of(keys.begin(), keys.end(), IsSeedKey); }
@@ -179,7 +192,7 @@ std::string ShortestYaml(const std::string& text) {
   const auto number = ParseNumber(text);
   const bool is_exact = number && std::isfinite(*number) && std::abs(*number) < kExactIntegers;
   if (!is_exact || HasLeadingZero(text)) return text;
-  return fmt::format("{}", *number);
+  return fmt::format("{}", WithOneZero(*number));
 }
 
 }  // namespace depthgrid

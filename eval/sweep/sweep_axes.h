@@ -44,7 +44,7 @@ struct SweepAxis {
 // or an axis that occurs twice.
 std::vector<SweepAxis> ReadAxes(const Config& axes);
 
-// Numbers in their shortest form; other text unchanged.
+// Numbers in their shortest form, -0 as 0; other text unchanged.
 std::string ShortestYaml(const std::string& text);
 
 }  // namespace depthgrid
