@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "mapper/io/frozen_motion.h"
@@ -11,15 +12,20 @@ namespace {
 
 bool SeesSomething(const DepthImage& image) {
   return std::any_of(image.z_m.begin(), image.z_m.end(),
-                     [](float z_m) { return z_m != kInvalidDepth; });
+                     [](float z_m) { return z_m != kInvalidDepth && !std::isnan(z_m); });
+}
+
+// By their bits: some drivers write NaN for invalid pixels, which compares unequal to itself.
+bool AreSame(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
 }  // namespace
 
 bool FrozenImages::IsFrozen(std::shared_ptr<const DepthImage> image, const Pose3& slam_from_camera,
                             double stamp_s, int slam_epoch) {
-  const bool same =
-      image_ && slam_epoch == slam_epoch_ && image->z_m == image_->z_m && SeesSomething(*image);
+  const bool same = image_ && slam_epoch == slam_epoch_ && AreSame(image->z_m, image_->z_m) &&
+                    SeesSomething(*image);
   if (!same) {
     image_ = std::move(image);
     slam_from_camera_ = slam_from_camera;

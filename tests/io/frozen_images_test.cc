@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace depthgrid {
 namespace {
@@ -37,6 +38,23 @@ TEST(FrozenImages, AreNotThoseOfACameraThatStandsOrMovesAlongAWall) {
   EXPECT_FALSE(images.IsFrozen(ImageOf(3.0F), MovedBy(0.5, 1.0), 11.2, 1));  // SLAM moved, not it
   EXPECT_FALSE(images.IsFrozen(ImageOf(kInvalidDepth), MovedBy(0.0, 0.0), 12.0, 1));
   EXPECT_FALSE(images.IsFrozen(ImageOf(kInvalidDepth), MovedBy(0.0, 1.0), 12.1, 1));
+}
+
+// Some drivers write NaN for a pixel without depth, and a NaN is not equal to itself.
+TEST(FrozenImages, AreFoundByTheirBitsThoughPixelsAreNoNumbers) {
+  const auto with_nan = [](float z_m) {
+    auto image = std::make_shared<DepthImage>(*ImageOf(z_m));
+    image->z_m[5] = std::numeric_limits<float>::quiet_NaN();
+    return image;
+  };
+  FrozenImages images;
+  EXPECT_FALSE(images.IsFrozen(with_nan(2.0F), TurnedBy(0.0), 0.0, 0));
+  EXPECT_TRUE(images.IsFrozen(with_nan(2.0F), TurnedBy(2.5), 0.06, 0));
+  EXPECT_FALSE(images.IsFrozen(with_nan(2.1F), TurnedBy(5.0), 0.09, 0));
+  // One without any depth shows nothing that could stand still.
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_FALSE(images.IsFrozen(ImageOf(kNan), MovedBy(0.0, 0.0), 1.0, 0));
+  EXPECT_FALSE(images.IsFrozen(ImageOf(kNan), MovedBy(0.0, 1.0), 1.1, 0));
 }
 
 }  // namespace
