@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
 
 #include <optional>
 #include <sstream>
@@ -47,8 +48,17 @@ class BoundsCheck final : public YAML::EventHandler {
     if (odd_key_) Fail(*odd_key_, "a key must be a plain word");
   }
 
+  // The parser's error, but for an unclosed bracket at the one that it has not seen closed: the
+  // parser is then at the next bracket or at the end of the text.
+  YAML::ParserException AtItsCause(const YAML::ParserException& error) const {
+    const bool is_list = error.msg == YAML::ErrorMsg::END_OF_SEQ_FLOW;
+    if (groups_.empty() || !(is_list || error.msg == YAML::ErrorMsg::END_OF_MAP_FLOW)) return error;
+    return {groups_.back().begin, is_list ? "'[' is not closed" : "'{' is not closed"};
+  }
+
  private:
   struct Group {
+    YAML::Mark begin;
     bool is_map = false;
     bool key_is_next = false;
     std::unordered_set<std::string> keys;
@@ -59,7 +69,7 @@ class BoundsCheck final : public YAML::EventHandler {
     if (groups_.size() >= kMaxYamlDepth) {
       Fail(mark, fmt::format("values are nested deeper than {}", kMaxYamlDepth));
     }
-    groups_.push_back({is_map, is_map, {}});
+    groups_.push_back({mark, is_map, is_map, {}});
   }
 
   // `word` is null for a value that is not a plain word.
@@ -108,7 +118,11 @@ YAML::Node Parsed(const std::string& text, const std::string& place) {
   std::istringstream stream(text);
   YAML::Parser parser(stream);
   BoundsCheck check(place);
-  parser.HandleNextDocument(check);
+  try {
+    parser.HandleNextDocument(check);
+  } catch (const YAML::ParserException& error) {
+    throw check.AtItsCause(error);
+  }
   check.RequirePlainKeys();
   return YAML::Load(text);
 }

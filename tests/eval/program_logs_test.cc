@@ -214,7 +214,7 @@ TEST_F(ProgramLogs, AFinishedMapOfImpossibleSettingsIsRefused) {
   Succeed("map robot.log -o first");
   const std::string settings = ReadFile(Path("first/run.yaml"));
   Write("first/run.yaml", "foo: [\n");
-  ExpectRefusal("map robot.log --map first -o out", {"first/run.yaml:2: not valid YAML"});
+  ExpectRefusal("map robot.log --map first -o out", {"first/run.yaml:1: not valid YAML"});
   Write("first/run.yaml", "mapper:\n  of_old: 1\n  grid: {resolution_m: -3}\n");
   ExpectRefusal("map robot.log --map first -o out",
                 {"first/run.yaml:3: mapper.grid.resolution_m is '-3', must be from 0.005 to 1"});

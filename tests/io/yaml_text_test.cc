@@ -79,13 +79,22 @@ TEST(YamlText, ManyKeysAreComparedInReasonableTime) {
 
 // A list that is never closed is no key.
 TEST(YamlText, WhatIsNotYamlIsSaidOfTheValue) {
-  EXPECT_EQ(SetRefusal("seed=[1"),
-            "--set seed=[1: the value is not valid YAML: end of sequence flow not found");
+  EXPECT_EQ(SetRefusal("seed=[1"), "--set seed=[1: the value is not valid YAML: '[' is not closed");
   EXPECT_EQ(SetRefusal("slam={loops: {recall"),
-            "--set slam={loops: {recall: the value is not valid YAML: end of map flow not found");
+            "--set slam={loops: {recall: the value is not valid YAML: '{' is not closed");
   EXPECT_EQ(SetRefusal("scene=\"a"),
             "--set scene=\"a: the value is not valid YAML: illegal EOF in scalar");
-  EXPECT_EQ(YamlRefusal("[1"), "x:1: not valid YAML: end of sequence flow not found");
+  EXPECT_EQ(YamlRefusal("[1"), "x:1: not valid YAML: '[' is not closed");
+}
+
+// The parser notices at the next bracket or at the end of the text, lines later.
+TEST(YamlText, ABracketIsNotClosedWhereItIsOpened) {
+  EXPECT_EQ(YamlRefusal("a: 1\nb: [1, 2\nc: 3\n"), "x:2: not valid YAML: '[' is not closed");
+  EXPECT_EQ(YamlRefusal("a: 1\nb: [1, 2\n"), "x:2: not valid YAML: '[' is not closed");
+  EXPECT_EQ(YamlRefusal("a: 1\nb: {c: 1, d: 2\n\nx: 1\n"),
+            "x:2: not valid YAML: '{' is not closed");
+  EXPECT_EQ(YamlRefusal("a: [1,\n [2, 3],\n {b: 2,\n  c: [3]\n"),
+            "x:3: not valid YAML: '{' is not closed");
 }
 
 TEST(YamlText, KeysArePlainWordsGivenOnce) {
