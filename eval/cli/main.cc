@@ -382,7 +382,7 @@ int Main(int argc, char** argv) {
       program.app.exit(asked, text, text);
       fmt::print("{}", text.str());
     } catch (const CLI::ParseError& error) {
-      return Complain(UsageMessage(program.app, error), kBadInput);
+      return Complain(UsageMessage(program.app, error, {argv + 1, argv + argc}), kBadInput);
     }
     FinishOutput();
     return kDone;

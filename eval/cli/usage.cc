@@ -67,10 +67,24 @@ std::string KeyMeant(const CLI::App& app, const std::string& option) {
   return *std::find_if(keys.begin(), keys.end(), ends_so);
 }
 
-// `words`: the remaining words from the first unknown one on; after "--" none is an option.
-std::string UnknownWord(const CLI::App& app, const std::vector<std::string>& words) {
-  const bool ended = words.front() == "--" && words.size() > 1;
-  const std::string& word = words[ended ? 1 : 0];
+// The words that no command took, from the first on; after "--" none is an option.
+struct UnknownWords {
+  std::vector<std::string> words;
+  bool ended = false;  // they come after "--"
+};
+
+UnknownWords UnknownOf(const CLI::App& app) {
+  UnknownWords unknown{app.remaining(), false};
+  if (!unknown.words.empty() && unknown.words.front() == "--") {
+    unknown.words.erase(unknown.words.begin());
+    unknown.ended = true;
+  }
+  return unknown;
+}
+
+std::string UnknownWord(const CLI::App& app, const UnknownWords& unknown) {
+  const auto& [words, ended] = unknown;
+  const std::string& word = words.front();
   if (word.starts_with('-') && !ended) {
     const auto equals = word.find('=');
     const std::string name = word.substr(0, equals);
@@ -100,11 +114,18 @@ std::optional<double> FiniteNumber(const std::string& text) {
 
 }  // namespace
 
-std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error) {
+std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error,
+                         const std::vector<std::string>& given) {
   std::string name;
   const CLI::App& reached = Reached(app, name);
-  const std::vector<std::string> unknown = reached.remaining();
-  const std::string what = unknown.empty() ? error.what() : UnknownWord(reached, unknown);
+  UnknownWords unknown = UnknownOf(reached);
+  // Left to the commands above by one that has all its arguments at "--", or given before it.
+  const std::vector<std::string> above = app.remaining(true);
+  if (unknown.words.empty() && !above.empty() && above.front() != "--") {
+    unknown = {above, std::find(given.begin(), given.end(), "--") != given.end()};
+    if (!unknown.ended) return UnknownWord(app, unknown) + " (see depthgrid --help)";
+  }
+  const std::string what = unknown.words.empty() ? error.what() : UnknownWord(reached, unknown);
   return fmt::format("{} (see {} --help)", what, name);
 }
 

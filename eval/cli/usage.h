@@ -3,12 +3,14 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 namespace depthgrid::cli {
 
 // One line without the program's name: an unknown command or option with the nearest known one, or
-// CLI11's message.
-std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error);
+// CLI11's message. `given`: the words of the command line.
+std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error,
+                         const std::vector<std::string>& given);
 
 // For check(): CLI11's own PositiveNumber and NonNegativeNumber print the largest double in full.
 std::string RefusalUnlessPositive(const std::string& text);

@@ -280,6 +280,19 @@ TEST_F(ProgramOutput, AFileMayBeginWithADash) {
                 {"'-o' is one argument too many: after -- nothing is an option (see depthgrid run "
                  "--help)"});
   ExpectRefusal("run -small.yaml -o out", {"no option '-s"});
+  ExpectRefusal("first run one -o out", {"no command 'first' (see depthgrid --help)"});
+  ExpectRefusal("eval map one two -- -x",
+                {"'-x' is one argument too many: after -- nothing is an option (see depthgrid eval "
+                 "map --help)"});
+  ExpectRefusal("run -- -x", {"--output is required (see depthgrid run --help)"});
+  for (const char* extra :
+       {"run -o out -- -small.yaml -x", "run -small.yaml -o out -- -x", "run one -o out -- -x"}) {
+    SCOPED_TRACE(extra);
+    const bool unknown_first = std::string(extra).starts_with("run -small");
+    ExpectRefusal(extra, {unknown_first ? "no option '-s"
+                                        : "'-x' is one argument too many: after -- nothing is an "
+                                          "option (see depthgrid run --help)"});
+  }
 }
 
 TEST_F(ProgramOutput, RenderSaysThatNoImageShowsAnything) {
