@@ -84,11 +84,11 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vecto
         fmt::format("{}: one pose is matched, aligned and relative errors need more", of.estimate));
   } else if (!score.by_row &&
              (score.matched_poses < kFewShare * fewer || score.matched_poses < 2)) {
-    doubts.push_back(
-        fmt::format("{}: only {} of its {} poses have a stamp in common with {}'s {}; the errors "
-                    "are of those alone",
-                    of.estimate, score.matched_poses, score.estimate_poses, of.reference,
-                    score.reference_poses));
+    doubts.push_back(fmt::format(
+        "{}: only {} of its {} poses {} a stamp in common with {}'s {}; the errors "
+        "are of those alone",
+        of.estimate, score.matched_poses, score.estimate_poses,
+        score.matched_poses == 1 ? "has" : "have", of.reference, score.reference_poses));
   } else if (score.time_coverage < 1.0 - kMostMissing) {
     doubts.push_back(fmt::format("{}: covers {:.0f} % of {}'s time; the errors are of that alone",
                                  of.estimate, kPercent * score.time_coverage, of.reference));
@@ -171,12 +171,7 @@ Paired PairByRows(const TrajectoryFiles& files) {
 // The error message for no shared stamps: the time spans, and which time offset would help.
 std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
                               const EvalTrajectoryArguments& of) {
-  const auto span = [](const Trajectory& t) {
-    return fmt::format("from {:.3f} to {:.3f} s", t.front().stamp_s, t.back().stamp_s);
-  };
-  const std::string apart =
-      fmt::format("shares no stamp with {} (within {} s): it is {}, that one {}", of.reference,
-                  limit_s, span(files.estimate), span(files.reference));
+  const std::string apart = SpansApart(files.reference, files.estimate, of.reference, limit_s);
   const auto span_s = [](const Trajectory& t) { return t.back().stamp_s - t.front().stamp_s; };
   if (AreOfOtherUnits(span_s(files.reference), span_s(files.estimate))) {
     return apart + "; are both in seconds?";

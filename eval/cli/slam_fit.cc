@@ -36,7 +36,9 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
     run.truth.push_back(pair.reference);
     run.estimate.push_back(pair.estimate);
   }
-  if (run.truth.empty()) throw InputError(estimate_path, "shares no stamp with " + truth_path);
+  if (run.truth.empty()) {
+    throw InputError(estimate_path, SpansApart(truth, estimate, truth_path, kMaxStampDifferenceS));
+  }
   Warn(DoubtsOfPairs(pairs, {truth_path, estimate_path}));
   Warn(DoubtsOfClock(truth, estimate, {truth_path, estimate_path}));
   return run;

@@ -125,6 +125,15 @@ std::string LeverText(const LeverArm& lever, const TrajectoryNames& names) {
 
 }  // namespace
 
+std::string SpansApart(const Trajectory& reference, const Trajectory& estimate,
+                       const std::string& reference_name, double limit_s) {
+  const auto span = [](const Trajectory& t) {
+    return fmt::format("from {:.3f} to {:.3f} s", t.front().stamp_s, t.back().stamp_s);
+  };
+  return fmt::format("shares no stamp with {} (within {} s): it is {}, that one {}", reference_name,
+                     limit_s, span(estimate), span(reference));
+}
+
 std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
                                        const TrajectoryNames& names) {
   if (pairs.empty() || ReferencePath(pairs).back() <= kLeastPathM) return {};

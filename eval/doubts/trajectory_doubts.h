@@ -15,6 +15,11 @@ struct TrajectoryNames {
   std::string estimate;
 };
 
+// The rule that an estimate breaks which shares no stamp with a reference of this name, with the
+// time that each covers: "shares no stamp with truth.txt (within 0.01 s): it is from ...".
+std::string SpansApart(const Trajectory& reference, const Trajectory& estimate,
+                       const std::string& reference_name, double limit_s);
+
 // Warns of an estimate that stands still, is reversed in time, has another scale, or has other axes
 // or another order of quaternions than the reference.
 std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,

@@ -77,7 +77,7 @@ TEST_F(EvalTrajectory, SaysWhenItsErrorsAreOfFewPosesOrInOtherUnits) {
   EXPECT_EQ(one.exit_code, 0);
   EXPECT_THAT(
       one.err,
-      HasSubstr("one.txt: only 1 of its 3 poses have a stamp in common with truth.txt's 13"));
+      HasSubstr("one.txt: only 1 of its 3 poses has a stamp in common with truth.txt's 13"));
   std::string metres;
   std::string millimetres;
   for (int i = 0; i <= 12; ++i) {

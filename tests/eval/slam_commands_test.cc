@@ -169,7 +169,12 @@ TEST_F(SlamCommands, FitRefusesBadInput) {
   ExpectRefusal("slam-fit seq/groundtruth.txt nothing.txt", "nothing.txt");
   ExpectRefusal("slam-fit seq/groundtruth.txt seq/groundtruth.txt seq/groundtruth.txt", "pairs");
   Write("later.txt", "1000 0 0 0 0 0 0 1\n");
-  ExpectRefusal("slam-fit seq/groundtruth.txt later.txt", "later.txt");
+  const std::string truth_path = "seq/groundtruth.txt";
+  const Trajectory truth = ReadTrajectory(Path(truth_path));
+  ExpectRefusal("slam-fit seq/groundtruth.txt later.txt",
+                fmt::format("later.txt: shares no stamp with {} (within 0.01 s): it is from "
+                            "1000.000 to 1000.000 s, that one from {:.3f} to {:.3f} s",
+                            truth_path, truth.front().stamp_s, truth.back().stamp_s));
 }
 
 TEST_F(SlamCommands, CalibrateReachesItsTarget) {
