@@ -98,7 +98,8 @@ std::optional<std::string> DoubtOfSorted(const std::vector<double>& stamps_s,
   const StampOrder::SetBack& first = order.set_back.front();
   return fmt::format(
       "{}:{}: the clock was set back here, by about {:.3f} s{}: sorted by stamp, what was recorded "
-      "later comes first, and mixed with what it overlaps; parts that were cut here are right",
+      "later comes first, and mixed with what it overlaps; split the file before "
+      "this line and use the parts one by one",
       place, lines[first.at], first.by_s,
       order.set_back.size() == 1 ? "" : fmt::format(" ({} such lines)", order.set_back.size()));
 }

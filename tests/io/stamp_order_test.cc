@@ -84,6 +84,9 @@ TEST(StampOrder, FilesThatAreSortedSayThatTheClockWasSetBack) {
     poses += stamp + " 0 0 0 0 0 0 1\n";
   }
   const auto said = HasSubstr(":11: the clock was set back here, by about 50.000 s");
+  EXPECT_THAT(
+      ParseFileList(list, "depth.txt").warnings,
+      Contains(HasSubstr("; split the file before this line and use the parts one by one")));
   EXPECT_THAT(ParseFileList(list, "depth.txt").warnings, Contains(said));
   EXPECT_THAT(ParseTrajectory(poses, "poses.txt").Warnings("poses.txt"), Contains(said));
   const std::string late = "2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n";
