@@ -2,6 +2,7 @@
 // with an InputError. Fuzzed with libFuzzer (./dev fuzz) and run over the seeds by the tests.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,6 +15,9 @@ struct FuzzTarget {
   // exception).
   bool (*accepts)(std::string_view bytes);
 };
+
+// Shown by a test in place of the parameter's bytes.
+inline void PrintTo(const FuzzTarget& target, std::ostream* out) { *out << target.name; }
 
 const std::vector<FuzzTarget>& FuzzTargets();
 // Throws std::out_of_range.
