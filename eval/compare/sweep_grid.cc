@@ -159,7 +159,7 @@ void FindBest(const SweepGrid& grid, const OraclePoints& oracles, std::size_t ax
     (rows.empty() ? line.left_out : line.points).push_back(point);
     if (!rows.empty()) by_point.push_back(std::move(rows));
   }
-  if (line.points.size() < 2) return;
+  if (line.points.size() < 2 || better == Better::kNeither) return;
   const std::vector<std::string> seeds =
       SharedSeeds(grid, grid.points[line.points.front()], by_point);
   if (seeds.empty()) return;

@@ -10,6 +10,10 @@
 namespace depthgrid {
 namespace {
 
+void RequireDirection(Better better) {
+  Require(better != Better::kNeither, "the best is the least or the greatest");
+}
+
 // Smaller is always better.
 double Loss(double value, Better better) { return better == Better::kLower ? value : -value; }
 
@@ -60,6 +64,7 @@ std::vector<double> AdjustedAgainst(const std::vector<SettingRuns>& runs, std::s
 
 BestSetting FindBestSetting(const std::vector<SettingRuns>& runs, Better better,
                             const Resamples& resamples) {
+  RequireDirection(better);
   Require(!runs.empty(), "the best is one of at least one setting");
   for (const SettingRuns& r : runs) {
     Require(r.by_seed.size() == resamples.size(), "every setting has the same seeds");
@@ -83,6 +88,7 @@ BestSetting FindBestSetting(const std::vector<SettingRuns>& runs, Better better,
 }
 
 std::vector<double> BestOfEachSeed(const std::vector<SettingRuns>& runs, Better better) {
+  RequireDirection(better);
   Require(!runs.empty(), "the best is one of at least one setting");
   std::vector<double> best = runs.front().by_seed;
   for (const SettingRuns& r : runs) {
@@ -95,6 +101,7 @@ std::vector<double> BestOfEachSeed(const std::vector<SettingRuns>& runs, Better 
 
 std::vector<double> Regret(const std::vector<double>& by_seed,
                            const std::vector<double>& oracle_by_seed, Better better) {
+  RequireDirection(better);
   Require(by_seed.size() == oracle_by_seed.size(), "both sides have the same seeds");
   std::vector<double> regret;
   for (std::size_t i = 0; i < by_seed.size(); ++i) {

@@ -1,4 +1,5 @@
-// Finds the best value of a swept setting, such as the Kalman gain, and its uncertainty.
+// Finds the best value of a swept setting, such as the Kalman gain, and its uncertainty. There is
+// none for Better::kNeither, which is a broken precondition.
 #pragma once
 
 #include <cstddef>

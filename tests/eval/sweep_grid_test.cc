@@ -126,6 +126,15 @@ TEST(SweepGrid, OrdersNumbersAndKeepsTexts) {
   EXPECT_EQ(grid.seeds_of_row[5], "3");
 }
 
+TEST(SweepGrid, HasNoBestWhereNeitherMoreNorLessIsBetter) {
+  const SweepResults results = TableOfRepeats();
+  const auto lines =
+      LinesAlong(GridOf(results), 0, results.metrics[0].values, Better::kNeither, {});
+  ASSERT_EQ(lines.size(), 1U);
+  EXPECT_EQ(lines[0].points.size(), 2U);
+  EXPECT_FALSE(lines[0].best);
+}
+
 // Two seeds of the one with two of the other are no four.
 TEST(SweepGrid, CrossedSeedsCountAsManyAsOneOfThemHas) {
   const SweepResults table = TwoGains([](int run) -> Seeds { return {run / 2, run % 2}; });

@@ -201,5 +201,12 @@ TEST(BestSetting, HandWorked) {
   EXPECT_EQ(FindBestSetting(runs, Better::kHigher, Resamples(4)).setting, 0.0);
 }
 
+TEST(BestSetting, NoneIsBestWhereNeitherMoreNorLessIsBetter) {
+  const std::vector<SettingRuns> runs = {{0.0, {4, 5}}, {1.0, {1, 2}}};
+  EXPECT_THROW(FindBestSetting(runs, Better::kNeither, Resamples(2)), std::logic_error);
+  EXPECT_THROW(BestOfEachSeed(runs, Better::kNeither), std::logic_error);
+  EXPECT_THROW(Regret({1.0}, {1.0}, Better::kNeither), std::logic_error);
+}
+
 }  // namespace
 }  // namespace depthgrid
