@@ -1,5 +1,7 @@
 #include "sim/slam/slam_events.h"
 
+#include <algorithm>
+
 #include "mapper/core/median.h"
 
 namespace depthgrid {
@@ -7,6 +9,10 @@ namespace {
 
 constexpr double kGapSteps = 1.5;  // a step longer than this many median steps is a gap
 constexpr double kJumpMedians = 5.0;
+// Where most motions have no error, as of a SLAM that mostly stands or of a file that repeats the
+// truth, five medians are nothing too, and the rounding of the others would be jumps. A TUM file's
+// last decimal is 0.1 mm.
+constexpr double kLeastJumpM = 1e-3;
 constexpr double kOneJumpS = 0.2;
 constexpr double kCorrectedShare = 0.5;
 
@@ -22,7 +28,7 @@ std::vector<RunEvent> FindEvents(const SlamRun& run) {
     errors_m.push_back(MotionError(run, to - 1, to).translation.norm());
   }
   const double gap_s = kGapSteps * UpperMedian(steps_s);
-  const double jump_m = kJumpMedians * UpperMedian(errors_m);
+  const double jump_m = std::max(kJumpMedians * UpperMedian(errors_m), kLeastJumpM);
   for (std::size_t to = 1; to < run.truth.size(); ++to) {
     const bool gap = steps_s[to - 1] > gap_s;
     if (!gap && errors_m[to - 1] <= jump_m) continue;

@@ -16,8 +16,9 @@ struct RunEvent {
   Pose3 error;              // of the whole motion
 };
 
-// A jump is a motion error of more than five times the median (eight sigma of normal errors). Jumps
-// less than 0.2 s apart are merged, as the estimate oscillates before it settles.
+// A jump is a motion error of more than five times the median (eight sigma of normal errors) and of
+// more than 1 mm. Jumps less than 0.2 s apart are merged, as the estimate oscillates before it
+// settles.
 std::vector<RunEvent> FindEvents(const SlamRun& run);
 
 // The parts of the run between its corrections.

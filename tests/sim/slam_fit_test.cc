@@ -288,6 +288,23 @@ TEST(FitSlamErrors, LeavesCorrectionsOut) {
               apart.translation_m * apart.translation_m * apart.pairs + step_m * step_m, 1e-9);
 }
 
+// With a median error of nothing, five times as much is nothing too.
+TEST(FindEvents, WhatAFileRoundsIsNoJump) {
+  SlamRun run{RoundADesk(10.0), RoundADesk(10.0)};
+  for (std::size_t i = 0; i < run.estimate.size(); i += 5) {  // the last decimal of a TUM file
+    run.estimate[i].world_from_camera.translation.x() += 1e-4;
+  }
+  EXPECT_TRUE(FindEvents(run).empty());
+  // A centimetre is one, however well all else is known.
+  for (std::size_t i = 100; i < run.estimate.size(); ++i) {
+    run.estimate[i].world_from_camera.translation.y() += 0.01;
+  }
+  const auto events = FindEvents(run);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events[0].from, 99U);
+  EXPECT_EQ(events[0].to, 100U);
+}
+
 TEST(BetweenCorrections, AreAllOfARunWithoutAny) {
   const Trajectory truth = RoundADesk(2.0);
   const std::vector<SlamRun> stretches = BetweenCorrections({truth, truth});
