@@ -91,17 +91,16 @@ void CarmenCheck::AddReadings(const CarmenScan& scan, double no_return_m, int li
       }
       ++beyond_[static_cast<int>(std::floor(std::log(range_m) / std::log(kAlikeRatio)))];
     }
-    // Negated for NaN.
-    if (!(range_m >= min_range_m_ && range_m < no_return_m) ||
-        !(range_m > largest_m_ - kSameRangeM))
-      continue;
-    if (range_m > largest_m_ + kSameRangeM) {
-      largest_count_ = 0;
-      largest_line_ = line_number;
-    }
-    largest_m_ = std::max(largest_m_, range_m);
-    ++largest_count_;
+    if (range_m >= min_range_m_ && range_m < no_return_m) AddHit(range_m, line_number);
   }
+}
+
+void CarmenCheck::AddHit(double range_m, int line_number) {
+  if (!largest_.empty() && range_m <= largest_.rbegin()->first - kSameRangeM) return;
+  Repeated& same = largest_.try_emplace(range_m, Repeated{0, line_number}).first->second;
+  ++same.count;
+  // As the largest grows, those left behind are no longer near it.
+  largest_.erase(largest_.begin(), largest_.upper_bound(largest_.rbegin()->first - kSameRangeM));
 }
 
 // Codes for no-returns are few distinct values.
@@ -171,15 +170,23 @@ std::optional<std::string> CarmenCheck::DoubtOfUnits(const std::string& path) co
 }
 
 std::optional<std::string> CarmenCheck::DoubtOfLargest(const std::string& path) const {
+  if (largest_.empty()) return {};
+  const double largest_m = largest_.rbegin()->first;
+  Repeated all = largest_.rbegin()->second;
+  all.count = 0;
+  for (const auto& [range_m, repeated] : largest_) {
+    all.count += repeated.count;
+    all.first_line = std::min(all.first_line, repeated.first_line);
+  }
   // Rounded down, so that the setting covers all of them.
-  const double setting_m = std::floor((largest_m_ - kSameRangeM) * 1e3) * 1e-3;
-  if (setting_m > min_range_m_ && largest_count_ >= kFewestSuspicious &&
-      static_cast<double>(largest_count_) >= kSuspiciousShare * static_cast<double>(readings_)) {
+  const double setting_m = std::floor((largest_m - kSameRangeM) * 1e3) * 1e-3;
+  if (setting_m > min_range_m_ && all.count >= kFewestSuspicious &&
+      static_cast<double>(all.count) >= kSuspiciousShare * static_cast<double>(readings_)) {
     return fmt::format(
         "{}:{}: {} of {} readings are {:g} m, the largest: if that is how the laser writes \"no "
         "return\", they are drawn as walls; --set sequence.laser.max_range_m={:.3f} takes them for "
         "none",
-        path, largest_line_, largest_count_, readings_, largest_m_, setting_m);
+        path, all.first_line, all.count, readings_, largest_m, setting_m);
   }
   return {};
 }

@@ -33,6 +33,7 @@ class CarmenCheck {
   std::optional<std::string> DoubtOfLargest(const std::string& path) const;
   std::optional<std::string> DoubtOfLongest(const std::string& path) const;
   void AddReadings(const CarmenScan& scan, double no_return_m, int line_number);
+  void AddHit(double range_m, int line_number);
   void AddPoses(const CarmenScan& scan, int line_number);
   void AddHeading(const CarmenScan& scan, int line_number);
   void AddCount(const CarmenScan& scan, int line_number);
@@ -43,9 +44,12 @@ class CarmenCheck {
   bool knows_mount_;
 
   std::int64_t readings_ = 0;
-  std::int64_t largest_count_ = 0;  // readings equal to the largest hit
-  double largest_m_ = 0.0;
-  int largest_line_ = 0;
+  // The hits that equal the largest one, by their range.
+  struct Repeated {
+    std::int64_t count = 0;
+    int first_line = 0;
+  };
+  std::map<double, Repeated> largest_;
   double shortest_m_ = std::numeric_limits<double>::infinity();
   int shortest_line_ = 0;
   double longest_m_ = 0.0;

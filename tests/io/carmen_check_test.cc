@@ -77,6 +77,17 @@ TEST(CarmenCheck, ALargestReadingThatComesOftenIsSaid) {
               testing::Not(HasSubstr("the largest")));
 }
 
+// Readings that rise by less than a millimetre from scan to scan are not all the largest.
+TEST(CarmenCheck, RisingReadingsAreNotAllTheLargest) {
+  std::string log;
+  for (int i = 0; i < 100; ++i)
+    log += fmt::format("FLASER 2 {0} {0} 0 0 0 0 0 0 {1} h 1\n", 8.0 + 0.0007 * i, i);
+  EXPECT_THAT(WarningsOf(log), testing::Not(HasSubstr("the largest")));
+  // Those within a millimetre of the last one are, and the first line with one is named.
+  for (int i = 100; i < 120; ++i) log += fmt::format("FLASER 2 8.0695 1 0 0 0 0 0 0 {} h 1\n", i);
+  EXPECT_THAT(WarningsOf(log), HasSubstr(":99: 24 of 240 readings are 8.0695 m, the largest"));
+}
+
 // No data, or so near that no setting could take them for no return.
 TEST(CarmenCheck, ReadingsThatDrawNoWallAreNotTakenForNoReturns) {
   for (const char* reading : {" 0", " -1", " 0.05", " 0.1"}) {
