@@ -68,10 +68,11 @@ struct ScanInPlace {
   Pose2 middle_from_base;
 };
 
-ScanInPlace ScanOf(const std::vector<MappedFrame>& frames, int member, int middle) {
+ScanInPlace ScanOf(const std::vector<MappedFrame>& frames, int member, int middle,
+                   double resolution_m) {
   const MappedFrame& frame = frames[static_cast<std::size_t>(member)];
   const Pose2 middle_from_map = Inverse(frames[static_cast<std::size_t>(middle)].map_from_base);
-  return {WithinSight(*frame.scan), middle_from_map * frame.map_from_base};
+  return {WithinSight(*frame.scan, resolution_m), middle_from_map * frame.map_from_base};
 }
 
 std::vector<Eigen::Vector2d> HitsOf(const Scan& scan, const Pose2& middle_from_base) {
@@ -147,7 +148,7 @@ SeenPlace SeenFrom(const std::vector<MappedFrame>& frames, const std::vector<int
   SeenSoFar seen(options);
   ScanRasterizer rasterizer;
   for (const int member : members) {
-    const auto [scan, middle_from_base] = ScanOf(frames, member, middle);
+    const auto [scan, middle_from_base] = ScanOf(frames, member, middle, options.resolution_m);
     seen.Add(rasterizer.Rasterize(scan, middle_from_base, options.resolution_m),
              HitsOf(scan, middle_from_base));
   }
@@ -160,7 +161,7 @@ SeenInHalves SeenInHalvesFrom(const std::vector<MappedFrame>& frames,
   SeenSoFar all(options), even(options), odd(options);
   ScanRasterizer rasterizer;
   for (std::size_t i = 0; i < members.size(); ++i) {
-    const auto [scan, middle_from_base] = ScanOf(frames, members[i], middle);
+    const auto [scan, middle_from_base] = ScanOf(frames, members[i], middle, options.resolution_m);
     const auto& cells = rasterizer.Rasterize(scan, middle_from_base, options.resolution_m);
     const std::vector<Eigen::Vector2d> hits = HitsOf(scan, middle_from_base);
     all.Add(cells, hits);

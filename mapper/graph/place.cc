@@ -37,11 +37,11 @@ void PlaceOptions::Visit(OptionsVisitor& v) {
            "size of the cells that are searched, metres");
 }
 
-Scan WithinSight(Scan scan) {
-  constexpr auto kSight = static_cast<float>(kPlaceSightM);
+Scan WithinSight(Scan scan, double resolution_m) {
+  const auto sight_m = static_cast<float>(std::min(kPlaceSightM, kPlaceSightCells * resolution_m));
   for (Beam& beam : scan.beams) {
-    beam.hit = beam.hit && beam.range_m <= kSight;
-    beam.clear_to_m = std::min(beam.clear_to_m, kSight);
+    beam.hit = beam.hit && beam.range_m <= sight_m;
+    beam.clear_to_m = std::min(beam.clear_to_m, sight_m);
   }
   return scan;
 }
@@ -84,7 +84,7 @@ OccupancyMap DrawPlace(const std::vector<MappedFrame>& frames, const std::vector
   const Pose2 middle_from_map = Inverse(PoseAt(frames, middle));
   for (const int i : members) {
     const MappedFrame& frame = frames[static_cast<std::size_t>(i)];
-    grid.Insert(rasterizer.Rasterize(WithinSight(*frame.scan),
+    grid.Insert(rasterizer.Rasterize(WithinSight(*frame.scan, resolution_m),
                                      middle_from_map * frame.map_from_base, resolution_m));
   }
   return grid.map();
@@ -99,7 +99,7 @@ std::vector<Eigen::Vector2d> PointsOfPlace(const std::vector<MappedFrame>& frame
   for (const int i : members) {
     const MappedFrame& frame = frames[static_cast<std::size_t>(i)];
     const Pose2 middle_from_base = middle_from_map * frame.map_from_base;
-    const Scan scan = WithinSight(*frame.scan);
+    const Scan scan = WithinSight(*frame.scan, resolution_m);
     for (const Beam& beam : scan.beams) {
       if (!beam.hit) continue;
       hits.emplace_back(middle_from_base * EndPoint(beam));

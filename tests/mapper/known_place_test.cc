@@ -40,6 +40,31 @@ TEST(Place, EndsWhereNothingTellsItFromOthersAnyMore) {
   EXPECT_LE(seen.geometry.width_cells, (kPlaceSightM + 10.0) / 0.05);
 }
 
+// At 1 cm a sight of 80 m would need 3 GB a place.
+TEST(Place, HasNoMoreCellsWhereTheyAreFiner) {
+  Scan scan;
+  scan.max_range_m = 80.0;
+  for (const float range_m : {5.0F, 15.0F, 79.0F}) {
+    const float bearing_rad = 0.1F * range_m;
+    scan.beams.push_back(
+        {.bearing_rad = bearing_rad, .range_m = range_m, .clear_to_m = range_m, .hit = true});
+  }
+  MappedFrame frame;
+  frame.scan = ScanArchive().Keep(scan);
+  const std::vector<MappedFrame> frames = {frame};
+  OverlapOptions overlap;
+  for (const auto& [resolution_m, seen_hits] : {std::pair{0.05, 3U}, {0.01, 2U}, {0.1, 3U}}) {
+    SCOPED_TRACE(resolution_m);
+    const double most_cells = 2.0 * kPlaceSightM / 0.05;
+    EXPECT_EQ(PointsOfPlace(frames, {0}, 0, resolution_m).size(), seen_hits);
+    EXPECT_LE(DrawPlace(frames, {0}, 0, resolution_m).geometry.width_cells, most_cells);
+    overlap.resolution_m = resolution_m;
+    const SeenPlace seen = SeenFrom(frames, {0}, 0, overlap);
+    EXPECT_EQ(seen.points.size(), seen_hits);
+    EXPECT_LE(seen.geometry.width_cells, most_cells);
+  }
+}
+
 TEST(WallPyramid, SumsOfSquaresAreThoseOfEachSquare) {
   const std::vector<MappedFrame> frames = StraightOn(10);
   const WallPyramid walls(DrawPlace(frames, {0, 3, 6, 9}, 5, 0.05));
