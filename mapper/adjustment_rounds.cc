@@ -19,7 +19,7 @@ void RoundOptions::Visit(OptionsVisitor& v) {
          "whether the first frames are gone through again once SLAM's errors are known");
 }
 
-bool AdjustmentRounds::IsDue(int frames) {
+bool AdjustmentRounds::BeginIfDue(int frames) {
   if (next_ == 0 || frames < next_ || frames > options_.last_frames) return false;
   next_ = static_cast<int>(std::min(std::ceil(options_.growth * frames), kNeverAgain));
   return true;

@@ -26,10 +26,10 @@ class AdjustmentRounds {
   explicit AdjustmentRounds(const RoundOptions& options)
       : options_(options), next_(options.first_frames) {}
 
-  // Whether a round is due; call once per frame with the number of mapped frames, without those of
-  // a prior map (the first round is to correct this run's start in it) and those at which SLAM
-  // stood, which add no information.
-  bool IsDue(int frames);
+  // Whether a round is due, which is then taken to begin; call once per frame with the number of
+  // mapped frames, without those of a prior map (the first round is to correct this run's start in
+  // it) and those at which SLAM stood, which add no information.
+  bool BeginIfDue(int frames);
   bool any_was_due() const { return next_ > options_.first_frames; }
 
  private:

@@ -150,7 +150,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
     return;
   }
   if (frame.loops.empty()) {
-    if (rounds.IsDue(mapped.size() - mapped.standing() - prior_frames)) {
+    if (rounds.BeginIfDue(mapped.size() - mapped.standing() - prior_frames)) {
       const std::optional<MotionSpread> spread = AdjustBetweenFrames();
       if (spread && beginning.lasts() && AwaitsSpread()) GoThroughAgain(frame, *spread);
     }
@@ -197,7 +197,7 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   }
   if (report.beams == 0) return;  // without returns there is nothing to judge by
   const double share = report.match.found ? report.match.score : 0.0;
-  if (relocation.Begins(share, mapped.size())) {
+  if (relocation.BeginIfDoubtful(share, mapped.size())) {
     reference->BeginPart(PartPlace::kGuessed);
   } else if (report.match.found) {
     relocation.Explained(share);

@@ -10,7 +10,7 @@ namespace depthgrid {
 namespace {
 
 // With fewer steps the usual motion is unknown.
-constexpr std::size_t kFewSteps = 6;
+constexpr std::size_t kFewMotions = 6;
 // After a gap this long the motion may have changed.
 constexpr double kForgottenS = 1.0;
 // Factor of the limit while the usual motion is not yet known. Chosen, not measured: it makes 0.33
@@ -35,7 +35,7 @@ bool IsAtZero(const Pose3& world_from_camera) {
 
 }  // namespace
 
-bool SlamEpochs::Motions::AreFew() const { return count < kFewSteps; }
+bool SlamEpochs::Motions::AreFew() const { return count < kFewMotions; }
 
 SlamStep SlamEpochs::Motions::Usual() const {
   auto reordered = steps;

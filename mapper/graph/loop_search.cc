@@ -187,9 +187,9 @@ std::vector<PlanarLoop> LoopSearch::Find(const std::vector<MappedFrame>& frames,
   const Answer answer = AnswerTo(frames, known, query);
   const std::vector<Query> before = std::exchange(put_off_, {});
   if (answer.loop) {
-    for (const Query& earlier : before) Take(frames, AnswerTo(frames, known, earlier));
+    for (const Query& earlier : before) AddAnswer(frames, AnswerTo(frames, known, earlier));
   }
-  return Take(frames, answer) ? waiting_ : std::vector<PlanarLoop>{};
+  return AddAnswer(frames, answer) ? waiting_ : std::vector<PlanarLoop>{};
 }
 
 LoopSearch::Answer LoopSearch::AnswerTo(const std::vector<MappedFrame>& frames,
@@ -206,7 +206,7 @@ LoopSearch::Answer LoopSearch::AnswerTo(const std::vector<MappedFrame>& frames,
 }
 
 // Adds the answer; returns whether enough loops agree now.
-bool LoopSearch::Take(const std::vector<MappedFrame>& frames, const Answer& answer) {
+bool LoopSearch::AddAnswer(const std::vector<MappedFrame>& frames, const Answer& answer) {
   if (!answer.loop) {
     Unanswered();
     return false;

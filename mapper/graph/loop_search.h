@@ -46,7 +46,7 @@ class LoopSearch {
   };
   Answer AnswerTo(const std::vector<MappedFrame>& frames, const std::vector<PlanarLoop>& known,
                   const Query& query);
-  bool Take(const std::vector<MappedFrame>& frames, const Answer& answer);
+  bool AddAnswer(const std::vector<MappedFrame>& frames, const Answer& answer);
   void Unanswered();
   bool Suffices(double correction_m, double way_m) const;
 

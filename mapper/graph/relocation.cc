@@ -83,7 +83,7 @@ bool Relocation::IsElsewhere(double duration_s, const Pose2& step) const {
          std::abs(step.yaw_rad) > kStepRad + kTurnRadps * duration_s;
 }
 
-bool Relocation::Begins(double share, int next_frame) {
+bool Relocation::BeginIfDoubtful(double share, int next_frame) {
   const double lost_s = std::exchange(unjudged_s_, 0.0);
   if (!std::exchange(unjudged_, false) || !options_.use || next_frame == 0) return false;
   // Lost again during the search: both losses form one new part.

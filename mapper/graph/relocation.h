@@ -65,7 +65,7 @@ class Relocation {
   void Lost(double duration_s, const std::optional<Pose2>& step);
   // Decides, from the map's explained share of the first scan after a loss, whether the guess is
   // doubtful. If so, begins the search; `next_frame` is the first mapped frame of the new part.
-  bool Begins(double share, int next_frame);
+  bool BeginIfDoubtful(double share, int next_frame);
   // Whether a match's explained share is that of a right place.
   bool IsUsual(double share) const { return share >= options_.min_share * usual_share_; }
   double usual_share() const { return usual_share_; }

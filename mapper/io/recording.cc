@@ -112,7 +112,7 @@ class RecordingSource final : public FrameSource {
       if (recording_.part.Has(i) && !poses_.back().slam_from_camera) ++without;
     }
     const std::size_t frames = ImagesOfPart(recording_).size();
-    if (without == frames) throw NoSharedStamps(slam, options);
+    if (without == frames) throw NoImageHasPose(slam, options);
     if (without > 0) {
       recording_.warnings.push_back(fmt::format(
           "{}: {} of {} {} no pose{}", recording_.name, without, Counted(frames, "frame"),
@@ -128,7 +128,7 @@ class RecordingSource final : public FrameSource {
     }
   }
 
-  InputError NoSharedStamps(const SlamOutput& slam, const RecordingOptions& options) const {
+  InputError NoImageHasPose(const SlamOutput& slam, const RecordingOptions& options) const {
     const bool any = std::any_of(slam.live.begin(), slam.live.end(), [](const SlamPose& pose) {
       return pose.slam_from_camera.has_value();
     });

@@ -14,7 +14,7 @@ constexpr double kRounding = 1e-9;
 // Removes the part of the curvature that `noise` may have caused: along each generalised
 // eigenvector, curvature v = lambda noise v, the factor is max(0, 1 - 3 / lambda). At three times
 // the noise an estimate is distinguishable from its error.
-Eigen::Matrix3d Debiased(const Eigen::Matrix3d& curvature, const Eigen::Matrix3d& noise) {
+Eigen::Matrix3d WithoutNoise(const Eigen::Matrix3d& curvature, const Eigen::Matrix3d& noise) {
   constexpr double kNoiseLevels = 3.0;
   const SymmetricEigen pencil = GeneralizedEigenOf(curvature, noise);
   // With V^T noise V = I: curvature = B diag(lambda) B^T, B = noise V.
@@ -129,7 +129,7 @@ Eigen::Matrix3d MatchInformation(const InformationSums& sums, const Pose2& map_f
   // here.
   const Eigen::Matrix3d noise =
       WithEigenvaluesAtLeast(sigma2 * sums.curvature_along_walls, kRounding * size);
-  const Eigen::Matrix3d curvature = Debiased(sums.curvature, noise);
+  const Eigen::Matrix3d curvature = WithoutNoise(sums.curvature, noise);
   // Sandwich estimator: an error of the gradient with covariance V moves the minimum by H^-1 times
   // the error, so the inverse covariance is H V^-1 H.
   const double variance = sums.gradient_covariance.trace();

@@ -43,7 +43,7 @@ CameraStand FloorTracker::StandOver(const Floor& floor, const Pose3& slam_from_c
   return {LevelFromCamera(turned), floor.up.dot(slam_from_camera.translation) + floor.offset_m};
 }
 
-bool FloorTracker::Believes(double height_m, double expected_m) {
+bool FloorTracker::AcceptOrCount(double height_m, double expected_m) {
   const bool pose_is_height = expected_m > kLeastPoseHeightM && expected_m < kMostPoseHeightM;
   if (!seen_ && !pose_is_height) return true;
   const double higher_m = height_m - expected_m;
@@ -83,7 +83,7 @@ void FloorTracker::LookAt(const DepthImage& image, const Pose3& slam_from_camera
   const CameraStand expected = StandOver(floor_, slam_from_camera);
   memory_ = LevelPointsOf(image, camera_, expected.level_from_camera, std::move(memory_));
   const std::optional<double> height_m = LowestSurface(memory_);
-  if (!height_m || !Believes(*height_m, expected.height_m)) return;
+  if (!height_m || !AcceptOrCount(*height_m, expected.height_m)) return;
   FloorPrior prior{expected.height_m, kStepSigmaM, kStepSigmaRad};
   if (!seen_ || std::abs(*height_m - expected.height_m) > kNearM) {
     prior = {*height_m, kFirstSigmaM, kFirstSigmaRad};

@@ -33,8 +33,9 @@ class FloorTracker {
   CameraStand StandOver(const Floor& floor, const Pose3& slam_from_camera) const;
   // Updates floor_ from the image.
   void LookAt(const DepthImage& image, const Pose3& slam_from_camera);
-  // Whether a surface at an unexpected height is accepted as the floor.
-  bool Believes(double height_m, double expected_m);
+  // Whether a surface at this height is accepted as the floor; counts how often one was seen at an
+  // unexpected height.
+  bool AcceptOrCount(double height_m, double expected_m);
 
   PinholeCamera camera_;
   FloorSource source_;

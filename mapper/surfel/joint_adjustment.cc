@@ -322,7 +322,7 @@ JointResult AdjustJointly(const std::vector<SurfelGroup>& groups,
       believed.back().huber_sigmas = options.loop_huber_sigmas;
     }
     JointResult result = Adjust(problem, believed);
-    if (jury.Changes(result.map_from_group)) continue;
+    if (jury.ReviseAccepted(result.map_from_group)) continue;
     result.loop_accepted = jury.accepted();
     return result;
   }

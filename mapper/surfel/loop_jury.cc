@@ -10,7 +10,7 @@ constexpr double kAlsoBad = 0.5;
 
 }  // namespace
 
-bool LoopJury::Changes(const std::vector<Pose2>& map_from_group) {
+bool LoopJury::ReviseAccepted(const std::vector<Pose2>& map_from_group) {
   std::vector<double> sigmas;
   for (const GroupLink& loop : loops_) sigmas.push_back(LinkSigmas(loop, map_from_group));
   const std::size_t worst = WorstAccepted(sigmas);

@@ -26,7 +26,7 @@ class LoopJury {
   // Judges the loops at poses adjusted with the accepted ones. True when the accepted loops
   // changed, so that all must be adjusted again; false when the decision is final, as when the
   // worst loop is one on trial.
-  bool Changes(const std::vector<Pose2>& map_from_group);
+  bool ReviseAccepted(const std::vector<Pose2>& map_from_group);
 
  private:
   std::size_t WorstAccepted(const std::vector<double>& sigmas) const;

@@ -13,7 +13,7 @@ std::vector<int> RoundsOf(const RoundOptions& options, int frames) {
   AdjustmentRounds rounds(options);
   std::vector<int> due;
   for (int i = 1; i <= frames; ++i) {
-    if (rounds.IsDue(i)) due.push_back(i);
+    if (rounds.BeginIfDue(i)) due.push_back(i);
   }
   return due;
 }

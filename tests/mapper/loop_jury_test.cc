@@ -24,16 +24,16 @@ TEST(LoopJury, TheWorstGoFirstAndWhatFitsWithoutThemComesBack) {
   LoopJury jury(loops, 5.0);
   using Accepted = std::vector<bool>;
   EXPECT_EQ(jury.accepted(), Accepted(4, true));
-  EXPECT_TRUE(jury.Changes(Poses({40.0, 25.0, 12.0, 1.0})));
+  EXPECT_TRUE(jury.ReviseAccepted(Poses({40.0, 25.0, 12.0, 1.0})));
   EXPECT_EQ(jury.accepted(), (Accepted{false, false, true, true}));
   // Those that are out do not count among the worst.
-  EXPECT_TRUE(jury.Changes(Poses({60.0, 3.0, 8.0, 1.0})));
+  EXPECT_TRUE(jury.ReviseAccepted(Poses({60.0, 3.0, 8.0, 1.0})));
   EXPECT_EQ(jury.accepted(), (Accepted{false, false, false, true}));
-  EXPECT_TRUE(jury.Changes(Poses({60.0, 3.0, 7.0, 1.0})));
+  EXPECT_TRUE(jury.ReviseAccepted(Poses({60.0, 3.0, 7.0, 1.0})));
   EXPECT_EQ(jury.accepted(), (Accepted{false, true, false, true}));
   // Once only.
-  EXPECT_TRUE(jury.Changes(Poses({60.0, 6.0, 7.0, 1.0})));
-  EXPECT_FALSE(jury.Changes(Poses({60.0, 3.0, 7.0, 1.0})));
+  EXPECT_TRUE(jury.ReviseAccepted(Poses({60.0, 6.0, 7.0, 1.0})));
+  EXPECT_FALSE(jury.ReviseAccepted(Poses({60.0, 3.0, 7.0, 1.0})));
   EXPECT_EQ(jury.accepted(), (Accepted{false, false, false, true}));
 }
 
@@ -41,9 +41,9 @@ TEST(LoopJury, OneOnTrialEndsItWhereItIsTheWorstAndStaysWhereItIsNot) {
   std::vector<GroupLink> loops = {LoopTo(1), LoopTo(2)};
   loops[1].on_trial = true;
   LoopJury jury(loops, 5.0);
-  EXPECT_TRUE(jury.Changes(Poses({10.0, 9.0})));
+  EXPECT_TRUE(jury.ReviseAccepted(Poses({10.0, 9.0})));
   EXPECT_EQ(jury.accepted(), (std::vector<bool>{false, true}));
-  EXPECT_FALSE(jury.Changes(Poses({10.0, 9.0})));
+  EXPECT_FALSE(jury.ReviseAccepted(Poses({10.0, 9.0})));
   EXPECT_EQ(jury.accepted(), (std::vector<bool>{false, false}));
 }
 

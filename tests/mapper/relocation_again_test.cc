@@ -43,12 +43,12 @@ TEST(Relocation, IsSettledOnceTheGuessOfALaterLossIsRight) {
     }
   };
   relocation.Lost(5.0, {});
-  ASSERT_TRUE(relocation.Begins(0.1, 50));
+  ASSERT_TRUE(relocation.BeginIfDoubtful(0.1, 50));
   add(4, 0.2, 0.0);  // half a metre on it is searched for, once
   EXPECT_FALSE(relocation.active());
   EXPECT_TRUE(relocation.unsettled());
   relocation.Lost(5.0, {});
-  ASSERT_TRUE(relocation.Begins(0.1, 54));
+  ASSERT_TRUE(relocation.BeginIfDoubtful(0.1, 54));
   add(20, 0.01, 1.0);  // no way for a search, and all that is seen was seen before
   EXPECT_FALSE(relocation.unsettled());
 }

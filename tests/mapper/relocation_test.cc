@@ -366,22 +366,22 @@ TEST(Relocation, AnUnknownRoomBeforeTheLossDoesNotMakeAnyGuessRight) {
   for (int i = 0; i < 100; ++i) relocation.Explained(0.0);
   EXPECT_FALSE(relocation.IsUsual(0.2));
   relocation.Lost(5.0, {});
-  EXPECT_TRUE(relocation.Begins(0.2, 250));
+  EXPECT_TRUE(relocation.BeginIfDoubtful(0.2, 250));
 }
 
 TEST(Relocation, DoesNotBeginWhereTheGuessIsGood) {
   RelocationOptions options;
   Relocation relocation(options, {}, {});
   for (int i = 0; i < 50; ++i) relocation.Explained(0.9);
-  EXPECT_FALSE(relocation.Begins(0.1, 50));  // not lost at all
+  EXPECT_FALSE(relocation.BeginIfDoubtful(0.1, 50));  // not lost at all
   const auto begins = [](Relocation& lost, double lost_s, double share,
                          const std::optional<Pose2>& epoch_step = {}) {
     lost.Lost(lost_s, epoch_step);
-    return lost.Begins(share, 50);
+    return lost.BeginIfDoubtful(share, 50);
   };
-  EXPECT_FALSE(begins(relocation, 1.9, 0.1));  // not lost for long
-  EXPECT_FALSE(begins(relocation, 5.0, 0.6));  // two thirds of what is usual
-  EXPECT_FALSE(relocation.Begins(0.1, 50));    // and judged once
+  EXPECT_FALSE(begins(relocation, 1.9, 0.1));         // not lost for long
+  EXPECT_FALSE(begins(relocation, 5.0, 0.6));         // two thirds of what is usual
+  EXPECT_FALSE(relocation.BeginIfDoubtful(0.1, 50));  // and judged once
   EXPECT_FALSE(begins(relocation, 0.4, 0.1, Pose2{5.0, 0.0, 0.0}));
   EXPECT_TRUE(begins(relocation, 5.0, 0.5));
   EXPECT_TRUE(relocation.active());
