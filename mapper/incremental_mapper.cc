@@ -367,6 +367,8 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const
     if (before.epoch == record.epoch) {
       frame.slam_motion =
           Between(BaseOf(*before.slam_from_camera), BaseOf(*record.slam_from_camera));
+    } else {
+      frame.gap_share = gap_share;
     }
   }
   return frame;

@@ -70,7 +70,9 @@ void MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
 }
 
 void MappedFrames::ForgetMotionTo(int position) {
-  frames_[static_cast<std::size_t>(position)].slam_motion.reset();
+  MappedFrame& frame = frames_[static_cast<std::size_t>(position)];
+  frame.slam_motion.reset();
+  frame.gap_share = 1.0;
 }
 
 std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,

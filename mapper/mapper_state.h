@@ -41,6 +41,7 @@ struct IncrementalMapper::State {
   PoseErrors errors;
   MatchNoise match_noise;
   std::optional<int> filter_epoch;  // SLAM epoch of the correction
+  double gap_share = 1.0;           // MappedFrame::gap_share of that epoch's first frame
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;
   SlideSearch slides;
@@ -126,7 +127,8 @@ struct IncrementalMapper::State {
                                 const Prediction& prediction, FrameReport& report);
   struct EpochStart {
     Pose2 map_from_base;
-    double sigma_share = 0.0;
+    double sigma_share = 0.0;  // added uncertainty, as a multiple of kEpochSigma
+    double gap_share = 1.0;    // MappedFrame::gap_share
   };
   EpochStart BegunAt(const std::shared_ptr<const Scan>& scan);
   std::optional<Pose2> SlamsWord() const;

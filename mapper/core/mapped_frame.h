@@ -25,6 +25,9 @@ struct MappedFrame {
   // SLAM's motion from the previous mapped frame; empty for the first and across epochs. In a prior
   // map, the motion between the final poses.
   std::optional<Pose2> slam_motion;
+  // Where it is empty: how well the motion from the previous mapped frame was known without SLAM,
+  // as a multiple of kEpochSigma.
+  double gap_share = 1.0;
   // SLAM's pose did not move since the previous frame (Standing).
   bool stands = false;
   MatchResult match;

@@ -1,6 +1,7 @@
 #include "mapper/surfel/group_motions.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "mapper/core/usual_step.h"
 #include "mapper/fuse/fusion.h"
@@ -100,13 +101,16 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
       continue;
     }
     motion.known = true;
+    double gap_variance = 0.0;
     for (auto i = static_cast<std::size_t>(groups[g - 1].first_frame) + 1; i <= first; ++i) {
       const std::optional<Pose2>& step = frames[i].slam_motion;
       motion.known = motion.known && step;
+      if (!step) gap_variance += frames[i].gap_share * frames[i].gap_share;
       motion.frames += StepsTo(frames[i], frames[i - 1], usual_s, usual);
       if (motion.known) motion.before_from_group = motion.before_from_group * *step;
     }
     motion.frames = std::max(motion.frames, 1);
+    motion.gap_share = std::sqrt(gap_variance);
     if (!frames[first - 1].kept()) motion.tie = TieBefore(of, frames, g);
   }
   return motions;

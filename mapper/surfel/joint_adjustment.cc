@@ -96,10 +96,12 @@ double Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
 }
 
 // Link from the previous group across a gap, with the relative pose of `map_from_group`.
-GroupLink GapLink(std::size_t group, const std::vector<Pose2>& map_from_group) {
+GroupLink GapLink(std::size_t group, const GroupMotion& motion,
+                  const std::vector<Pose2>& map_from_group) {
   const int second = static_cast<int>(group);
+  const Eigen::Vector3d gap_sigma = motion.gap_share * kEpochSigma;
   return {second - 1, second, Between(map_from_group[group - 1], map_from_group[group]),
-          kEpochSigma};
+          (gap_sigma.cwiseAbs2() + kOnlineSigma.cwiseAbs2()).cwiseSqrt()};
 }
 
 // Constraints other than SLAM's motion: ties, gaps, and the relative poses within a prior map.
@@ -111,7 +113,7 @@ std::vector<GroupLink> SettledLinks(const Problem& problem, const std::vector<Po
     const int second = static_cast<int>(g);
     if (motion.tie) links.push_back(*motion.tie);
     if (!motion.known) {
-      links.push_back(GapLink(g, before));
+      links.push_back(GapLink(g, motion, before));
       links.back().huber_sigmas = kGapHuberSigmas;
       continue;
     }
@@ -129,7 +131,7 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
     const int second = static_cast<int>(g);
     const GroupMotion& motion = problem.motions[g];
     if (!motion.known && !motion.tie) {
-      links.push_back(GapLink(g, map_from_group));
+      links.push_back(GapLink(g, motion, map_from_group));
       links.back().cauchy_sigmas = kGapCauchySigmas;
       continue;
     }

@@ -67,6 +67,8 @@ struct GroupMotion {
   int frames = 0;
   // Between groups of a prior map: the relative pose in that map, not SLAM's motion.
   bool of_prior_map = false;
+  // Where not `known`: how well the online estimate knows the motion, as a multiple of kEpochSigma.
+  double gap_share = 1.0;
   // Set when the frame before the group's first belongs to an earlier group: the link from that
   // group.
   std::optional<GroupLink> tie = {};

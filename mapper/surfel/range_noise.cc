@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numeric>
 
 namespace depthgrid {
 namespace {
@@ -17,6 +18,12 @@ constexpr double kMinRelativeSigma = 2e-4;
 constexpr double kSigmaOfMedianDifference = 1.0 / (0.674489750196 * 2.449489742783);
 // A range bin with fewer samples borrows from its neighbours.
 constexpr std::uint32_t kMinSamples = 200;
+// With so many times as many samples well within the reach, the first value does no harm near it.
+constexpr std::uint64_t kMuchWhole = 10;
+// Of a wall half a sigma before the reach what is left has .7 of the noise (range_cutoff.h).
+constexpr double kOfCutSigma = 1.4;
+// Enough for sigma to a sixth.
+constexpr std::uint32_t kFewSamples = 30;
 // Three beams count as evenly spaced when their gaps agree within this share.
 constexpr float kSpacingTolerance = 0.05F;
 // After this many scans only every kThinning-th is counted, as the histograms are full.
@@ -91,35 +98,50 @@ void RangeNoise::Differences::Add(const Scan& scan, std::size_t stride) {
     const float mean_m = (left.range_m + middle.range_m + right.range_m) / 3.0F;
     const auto range_bin =
         static_cast<std::size_t>(std::clamp(RangeBin(mean_m), 0, kRangeBins - 1));
-    if (mean_m * (1.0F + kUncut * static_cast<float>(relative_sigma[range_bin])) > reach_m) {
-      continue;
-    }
+    const float whole_to_m =
+        mean_m * (1.0F + kUncut * static_cast<float>(relative_sigma[range_bin]));
+    Samples& samples = whole_to_m > reach_m ? near_cut : whole;
     const int value_bin = std::clamp(ValueBin(std::abs(difference)), 0, kValueBins - 1);
-    ++histogram[range_bin][static_cast<std::size_t>(value_bin)];
-    ++count[range_bin];
+    ++samples.histogram[range_bin][static_cast<std::size_t>(value_bin)];
+    ++samples.count[range_bin];
   }
 }
 
 bool RangeNoise::Differences::Knows(std::size_t range_bin) const {
-  return count[range_bin] >= kMinSamples;
+  return whole.count[range_bin] >= kMinSamples;
 }
 
+std::uint64_t RangeNoise::Samples::Total() const {
+  return std::accumulate(count.begin(), count.end(), std::uint64_t{0});
+}
+
+// Where much of what was seen is near the reach, sigma is learnt from few samples, if need be from
+// those: the first value may be ten times too large, and then hardly anything would ever count as
+// well within.
 void RangeNoise::Differences::Refresh() {
+  tells_cutoff =
+      LearnFrom(whole, kMinSamples, 1.0) || whole.Total() > kMuchWhole * near_cut.Total() ||
+      LearnFrom(whole, kFewSamples, 1.0) || LearnFrom(near_cut, kFewSamples, kOfCutSigma);
+}
+
+bool RangeNoise::Differences::LearnFrom(const Samples& samples, std::uint32_t least,
+                                        double factor) {
   std::array<bool, kRangeBins> known{};
   for (std::size_t r = 0; r < kRangeBins; ++r) {
-    known[r] = Knows(r);
+    known[r] = samples.count[r] >= least;
     if (!known[r]) continue;
-    const double half = 0.5 * count[r];
+    const auto& histogram = samples.histogram[r];
+    const double half = 0.5 * samples.count[r];
     double below = 0.0;
     std::size_t bin = 0;
-    while (below + histogram[r][bin] < half) below += histogram[r][bin++];
+    while (below + histogram[bin] < half) below += histogram[bin++];
     const double low = ValueBinLow(static_cast<int>(bin));
     const double high = ValueBinLow(static_cast<int>(bin) + 1);
-    const double median = low + (high - low) * (half - below) / histogram[r][bin];
-    shown_sigma[r] = kSigmaOfMedianDifference * median;
+    const double median = low + (high - low) * (half - below) / histogram[bin];
+    shown_sigma[r] = factor * kSigmaOfMedianDifference * median;
     relative_sigma[r] = std::max(shown_sigma[r], kMinRelativeSigma);
   }
-  if (std::none_of(known.begin(), known.end(), [](bool k) { return k; })) return;
+  if (std::none_of(known.begin(), known.end(), [](bool k) { return k; })) return false;
   // Unknown bins take the nearest known one's, the shorter range's first.
   for (int r = 0; r < kRangeBins; ++r) {
     for (int d = 0; !known[static_cast<std::size_t>(r)] && d < kRangeBins; ++d) {
@@ -129,6 +151,7 @@ void RangeNoise::Differences::Refresh() {
       break;
     }
   }
+  return true;
 }
 
 // Whether beams 2^power apart share most of the error seen between beams twice as far apart, over
@@ -140,8 +163,8 @@ bool RangeNoise::AreAlike(std::size_t power) const {
   for (std::size_t r = 0; r < kRangeBins; ++r) {
     if (!near.Knows(r) || !far.Knows(r)) continue;
     const double ratio = near.shown_sigma[r] / far.shown_sigma[r];
-    seen += far.count[r] * ratio * ratio;
-    samples += far.count[r];
+    seen += far.whole.count[r] * ratio * ratio;
+    samples += far.whole.count[r];
   }
   return seen < kAlikeShare * samples;
 }
@@ -153,15 +176,14 @@ bool RangeNoise::ShowNoise(std::size_t power) const {
   double noisy = 0.0, samples = 0.0;
   for (std::size_t r = 0; r < kRangeBins; ++r) {
     if (!differences.Knows(r)) continue;
-    samples += differences.count[r];
-    noisy += differences.shown_sigma[r] > kMinRelativeSigma ? differences.count[r] : 0.0;
+    samples += differences.whole.count[r];
+    noisy += differences.shown_sigma[r] > kMinRelativeSigma ? differences.whole.count[r] : 0.0;
   }
   return 2.0 * noisy > samples;
 }
 
 double RangeNoise::RelativeSigma(double range_m, int stride) const {
-  const std::array<double, kRangeBins>& relative_sigma =
-      by_stride_[stride == 1 ? 0 : chosen_].relative_sigma;
+  const std::array<double, kRangeBins>& relative_sigma = DifferencesAt(stride).relative_sigma;
   // Linear between the bins' centres on the logarithm of the range.
   const double place = std::log2(range_m / kFirstRangeM) * kRangeBinsPerOctave - 0.5;
   const double clamped = std::clamp(place, 0.0, kRangeBins - 1.0);

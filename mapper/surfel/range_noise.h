@@ -21,6 +21,9 @@ class RangeNoise {
   void Add(const Scan& scan);
   // sigma(r) / r estimated from beams `stride` apart: 1, or stride().
   double RelativeSigma(double range_m, int stride) const;
+  // Whether it tells what the sensor's reach cut off: not while little was seen, and that near the
+  // reach, since sigma is a cheap scanner's until it is learnt.
+  bool TellsCutoff(int stride) const { return DifferencesAt(stride).tells_cutoff; }
   // Spacing of beams from which their errors are independent: 1, 2, 4, 8, 16 or 32.
   int stride() const { return 1 << chosen_; }
 
@@ -30,16 +33,29 @@ class RangeNoise {
   static constexpr int kStrides = 6;      // 1 to 32
 
   // Second differences of beams one stride apart.
-  struct Differences {
+  struct Samples {
     std::array<std::array<std::uint32_t, kValueBins>, kRangeBins> histogram{};
     std::array<std::uint32_t, kRangeBins> count{};
+
+    std::uint64_t Total() const;
+  };
+  struct Differences {
+    Samples whole;     // well within the sensor's reach
+    Samples near_cut;  // so near the reach that the largest may be missing
     std::array<double, kRangeBins> shown_sigma{};     // relative, by the median; known bins only
     std::array<double, kRangeBins> relative_sigma{};  // at least that of the best sensor; all bins
+    bool tells_cutoff = false;
 
     void Add(const Scan& scan, std::size_t stride);
     void Refresh();
     bool Knows(std::size_t range_bin) const;
+    // Learns `factor` times what the bins with at least `least` samples show; false where there is
+    // none.
+    bool LearnFrom(const Samples& samples, std::uint32_t least, double factor);
   };
+  const Differences& DifferencesAt(int stride) const {
+    return by_stride_[stride == 1 ? 0 : chosen_];
+  }
   bool AreAlike(std::size_t power) const;
   bool ShowNoise(std::size_t power) const;
 

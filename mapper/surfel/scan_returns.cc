@@ -18,7 +18,7 @@ void ScanReturns::Read(const Scan& scan, const RangeNoise& noise, int stride) {
   LearnDirections(scan);
   step_rad_ = stride * beam_step_rad_;
   returns_.clear();
-  max_range_m_ = scan.max_range_m;
+  max_range_m_ = noise.TellsCutoff(stride) ? scan.max_range_m : 0.0;
   double looked_up_m = 0.0;
   double relative_sigma = 0.0;
   for (std::size_t i = 0; i < scan.beams.size(); i += static_cast<std::size_t>(stride)) {

@@ -38,6 +38,7 @@ class ScanReturns {
   ScanReturn& operator[](int i) { return returns_[static_cast<std::size_t>(i)]; }
   const std::vector<Span>& runs() const { return runs_; }
   double step_rad() const { return step_rad_; }  // mean angle between beams read
+  // The sensor's reach; 0: not known, or what it cut off is not (RangeNoise::TellsCutoff).
   double max_range_m() const { return max_range_m_; }
 
  private:

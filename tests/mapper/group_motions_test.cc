@@ -80,6 +80,24 @@ TEST(GroupMotions, NeitherIsOneThatWasHardlySeenNorOneAfterAJump) {
   EXPECT_TRUE(starts.back().settled);  // after the next tie
 }
 
+// Of several steps without SLAM's motion between two groups the variances add up.
+TEST(GroupMotions, AGapIsAsWideAsItsStepsTogether) {
+  Walks walks(1);
+  SurfelGroupOptions options;
+  options.length_m = 0.15;  // two frames
+  SurfelGroups pairs(options);
+  for (const MappedFrame& frame : walks.frames) pairs.Add({}, frame.map_from_base);
+  ASSERT_EQ(pairs.groups()[2].first_frame, 4);
+  walks.frames[3].slam_motion.reset();
+  walks.frames[3].gap_share = 0.03;
+  walks.frames[4].slam_motion.reset();
+  walks.frames[4].gap_share = 0.04;
+  const std::vector<GroupMotion> motions = MotionsOf(pairs, walks.frames);
+  EXPECT_TRUE(motions[1].known);
+  EXPECT_FALSE(motions[2].known);
+  EXPECT_NEAR(motions[2].gap_share, 0.05, 1e-12);
+}
+
 // However often the place is walked through.
 TEST(GroupMotions, ManyWalksBecomeAsManyGroupsAsAFew) {
   for (const int count : {4, 40, 400}) {

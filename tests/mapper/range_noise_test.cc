@@ -71,6 +71,21 @@ TEST(RangeNoise, IsTheSameNearTheSensorsReach) {
   EXPECT_NEAR(noise.RelativeSigma(5.9, 1), kRelative, 0.04 * kRelative);
 }
 
+// The value to begin with is ten times as large here: with it, all of this wall would count as so
+// near the reach that its longest ranges may be missing, and nothing would ever be learnt.
+TEST(RangeNoise, IsLearntFromAWallAtTheReachAlone) {
+  constexpr double kRelative = 0.001;
+  PlanarLaser laser;
+  laser.max_range_m = 6.0;
+  laser.sigma_of_range = kRelative;
+  RangeNoise noise;
+  for (std::uint32_t frame = 0; frame < 20; ++frame) {
+    noise.Add(ScanOf({{{5.95, -8.0}, {5.95, 8.0}}}, {}, laser, 3, frame));
+  }
+  EXPECT_TRUE(noise.TellsCutoff(1));
+  EXPECT_NEAR(noise.RelativeSigma(5.95, 1), kRelative, 0.2 * kRelative);
+}
+
 TEST(RangeNoise, OfBeamsThatErrAlikeOnlySomeCount) {
   for (const auto& [length, stride] : {std::pair{1.5, 2}, {3.0, 4}, {6.0, 8}}) {
     RandomStream random(2, RandomStage::kTest);
