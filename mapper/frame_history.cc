@@ -15,8 +15,8 @@ namespace {
 
 // Longest gap over which the last motion is extrapolated.
 constexpr double kNearS = 0.5;
-// Longest gap that counts as one frame: 10 Hz.
-constexpr double kNextS = 0.1;
+// Longest gap that counts as one frame: 10 Hz, and what stamps are rounded by.
+constexpr double kNextS = 0.105;
 // Gap at which the extrapolation's uncertainty reaches kEpochSigma; it grows with the square of the
 // time.
 constexpr double kSurpriseS = 0.3;
@@ -171,6 +171,7 @@ Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_sl
   const Pose2 motion = MotionOf(*before, *later);
   went_on.map_from_base =
       went_on.map_from_base * Pose2::FromVector(gap_s / step_s * motion.vector());
+  if (went_on.next && gap_s > 0.0) went_on.gap_share = went_on.sigma_share;
   return went_on;
 }
 

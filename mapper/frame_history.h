@@ -71,6 +71,8 @@ struct Extrapolation {
   bool near = false;         // the last pose is recent enough for this to be near the truth
   bool next = false;         // the last pose is one frame ago (0.1 s at most)
   double sigma_share = 1.0;  // uncertainty as a multiple of kEpochSigma
+  // How well the motion is known, the same: 1 but where that of one frame went on.
+  double gap_share = 1.0;
 };
 Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);
 

@@ -1,6 +1,7 @@
 #include "mapper/incremental_mapper.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 
@@ -339,6 +340,7 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   const bool matches = reference && report.match.found;
   const auto matched = matches ? reference->MatchedParts() : std::span<const MapPart>();
   const MappedFrame& added = mapped.Add(std::move(frame), scans, explained, matched, from);
+  gap_variance = 0.0;
   report.inserted = added.kept();
   report.well_seen = !added.kept();
   if (!reference) return;
@@ -368,7 +370,7 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const
       frame.slam_motion =
           Between(BaseOf(*before.slam_from_camera), BaseOf(*record.slam_from_camera));
     } else {
-      frame.gap_share = gap_share;
+      frame.gap_share = std::sqrt(gap_variance);
     }
   }
   return frame;

@@ -41,8 +41,7 @@ Pose2 IncrementalMapper::State::CarriedOn() const {
 IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
     const std::shared_ptr<const Scan>& scan) {
   const Extrapolation went_on = Extrapolated(history, filter.map_from_slam());
-  const EpochStart going_on{went_on.map_from_base, went_on.sigma_share,
-                            went_on.next ? went_on.sigma_share : 1.0};
+  const EpochStart going_on{went_on.map_from_base, went_on.sigma_share, went_on.gap_share};
   EpochStart carried{CarriedOn(), 1.0};
   if (!scan || mapped.empty()) return went_on.near ? going_on : carried;
   const auto share = [&](const Pose2& guess, double sigma_share) {
@@ -111,7 +110,7 @@ void IncrementalMapper::State::Anchor(const EpochStart& start) {
                  filter.covariance() + added);
   errors.BeginEpoch(start.map_from_base, added, filter.step().new_bias);
   filter_epoch = record.epoch;
-  gap_share = start.gap_share;
+  gap_variance += start.gap_share * start.gap_share;
 }
 
 bool IncrementalMapper::State::SearchesSlips() const {

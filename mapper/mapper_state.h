@@ -41,7 +41,7 @@ struct IncrementalMapper::State {
   PoseErrors errors;
   MatchNoise match_noise;
   std::optional<int> filter_epoch;  // SLAM epoch of the correction
-  double gap_share = 1.0;           // MappedFrame::gap_share of that epoch's first frame
+  double gap_variance = 0.0;        // square of MappedFrame::gap_share since the last mapped frame
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;
   SlideSearch slides;

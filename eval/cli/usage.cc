@@ -122,7 +122,8 @@ std::string UsageMessage(const CLI::App& app, const CLI::ParseError& error,
   // Left to the commands above by one that has all its arguments at "--", or given before it.
   const std::vector<std::string> above = app.remaining(true);
   if (unknown.words.empty() && !above.empty() && above.front() != "--") {
-    unknown = {above, std::find(given.begin(), given.end(), "--") != given.end()};
+    const auto word = std::find(given.begin(), given.end(), above.front());
+    unknown = {above, std::find(given.begin(), word, "--") != word};
     if (!unknown.ended) return UnknownWord(app, unknown) + " (see depthgrid --help)";
   }
   const std::string what = unknown.words.empty() ? error.what() : UnknownWord(reached, unknown);

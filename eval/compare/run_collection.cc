@@ -97,6 +97,7 @@ void AddMetrics(const std::string& file, SweepResults& table) {
 
 SweepResults ReadRuns(const std::string& folder) {
   if (SweepDatabase::Exists(folder)) return ReadSweep(folder);
+  RequireOneResult(folder);
   SweepResults table;
   table.folder = folder;
   for (const fs::path& run : RunFolders(folder)) {

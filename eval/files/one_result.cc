@@ -21,8 +21,10 @@ void MarkAsReplaced(const std::string& folder) {
 void UnmarkAsReplaced(const std::string& folder) { fs::remove(MarkIn(folder)); }
 
 void RequireOneResult(const std::string& folder) {
+  // The mark of a study lies beside its cases' folders.
+  const std::string study = (fs::path(folder) / ".").lexically_normal().parent_path().parent_path();
   std::error_code unknown;
-  if (!fs::exists(MarkIn(folder), unknown)) return;
+  if (!fs::exists(MarkIn(folder), unknown) && !fs::exists(MarkIn(study), unknown)) return;
   throw InputError(folder,
                    "holds files of two results: a command that replaced one was killed; --force "
                    "writes it again");

@@ -9,7 +9,7 @@ namespace depthgrid {
 // Throws std::runtime_error when the folder cannot be written.
 void MarkAsReplaced(const std::string& folder);
 void UnmarkAsReplaced(const std::string& folder);
-// Throws InputError when the folder is marked.
+// Throws InputError when the folder is marked, or the one that it lies in.
 void RequireOneResult(const std::string& folder);
 
 }  // namespace depthgrid

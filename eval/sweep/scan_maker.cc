@@ -109,7 +109,9 @@ void ScanJob(DepthJob& job, const ScanMakerContext& context) {
     try {
       ScanBlock(job, first, count, context.threads);
     } catch (const std::exception& error) {  // an image could not be made
-      for (ScanSet* set : job.sets) set->failure = error.what();
+      for (ScanSet* set : job.sets) {
+        if (set->failure.empty()) set->failure = error.what();
+      }
     }
     const bool all_failed = std::all_of(job.sets.begin(), job.sets.end(),
                                         [](const ScanSet* set) { return !set->failure.empty(); });

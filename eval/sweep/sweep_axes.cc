@@ -77,7 +77,8 @@ double WithoutRounding(double value) {
 double ListedAt(const AxisRange& range, double share) {
   const double value = range.At(share);
   const double rounding = kRoundings * std::max(std::abs(range.from), std::abs(range.to));
-  const bool is_zero = range.scale == RangeScale::kLinear && std::abs(value) <= rounding;
+  const bool crosses_zero = (range.from < 0.0) != (range.to < 0.0);
+  const bool is_zero = crosses_zero && share > 0.0 && share < 1.0 && std::abs(value) <= rounding;
   return is_zero ? 0.0 : WithoutRounding(value);
 }
 

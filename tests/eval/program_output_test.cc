@@ -281,6 +281,7 @@ TEST_F(ProgramOutput, AFileMayBeginWithADash) {
                  "--help)"});
   ExpectRefusal("run -small.yaml -o out", {"no option '-s"});
   ExpectRefusal("first run one -o out", {"no command 'first' (see depthgrid --help)"});
+  ExpectRefusal("first run -o out -- one", {"no command 'first' (see depthgrid --help)"});
   ExpectRefusal("eval map one two -- -x",
                 {"'-x' is one argument too many: after -- nothing is an option (see depthgrid eval "
                  "map --help)"});

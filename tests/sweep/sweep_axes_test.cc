@@ -40,6 +40,7 @@ TEST(SweepAxes, HaveOneZeroOnly) {
 TEST(SweepAxes, BetweenEndsOfBothSignsLiesZero) {
   EXPECT_THAT(TextsOf("{from: -0.3, to: 0.6, count: 4}"), ElementsAre("-0.3", "0", "0.3", "0.6"));
   EXPECT_THAT(TextsOf("{from: -1, to: 1, count: 3}"), ElementsAre("-1", "0", "1"));
+  EXPECT_THAT(TextsOf("{from: 1e-17, to: 1, count: 2}"), ElementsAre("1e-17", "1"));
   EXPECT_THAT(TextsOf("{from: 1e-20, to: 3e-20, count: 3}"),
               ElementsAre("1e-20", "2e-20", "3e-20"));
 }

@@ -1,0 +1,236 @@
+#!/usr/bin/python3
+"""Rooms, paths, depth cameras and SLAM drawn at random, and how far depthgrid run is off in them (python3-numpy).
+
+    random_scenes.py DEPTHGRID FOLDER FIRST COUNT [-- ARGUMENT ...]
+
+Scene i is a building of random_buildings.py up to 20 m long, its walls up to the ceiling, with or without furniture of
+several forms and heights. The path leads between random places in it, 30 or 60 s, on a robot (the camera .25 to 1.2 m
+high) or hand-held. Camera, depth noise, its artifacts, SLAM profile, drift, loops and losses are drawn as well. FOLDER
+keeps the scenes (sI.yaml), paths (sI.path.txt), experiments (sI.run.yaml), the results of each run (sI.out) and those
+of earlier calls; the arguments behind -- go to depthgrid run. The same number gives the same scene and settings.
+docs/results.md, "Random rooms".
+"""
+import json
+import math
+import os
+import random
+import subprocess
+import sys
+
+import numpy as np
+
+import random_buildings as buildings
+
+MOST_FRAMES = 1800
+OPTICAL = np.array([[0, 0, 1], [-1, 0, 0], [0, -1, 0]])  # the camera's axes in those of a body: x ahead, z up
+
+
+class Room(buildings.Building):
+    """A building with heights, as shapes of a scene file."""
+
+    def __init__(self, number):
+        self.shapes = []
+        self.look = np.random.default_rng(number + 77000)
+        self.ceiling = float(self.look.uniform(2.3, 3.2))
+        super().__init__(number)
+        width, length, wall = self.width, self.height, 0.2
+        for z in (-0.1, self.ceiling):
+            self.add_box(width + 1, length + 1, 0.1, width / 2, length / 2, z)
+        for x0, y0, x1, y1 in [(-wall, -wall, width + wall, 0), (-wall, length, width + wall, length + wall),
+                               (-wall, 0, 0, length), (width, 0, width + wall, length)]:
+            self.add_block(x0, y0, x1, y1)
+
+    def add_box(self, sx, sy, sz, x, y, z, yaw_rad=0.0):
+        self.shapes.append(f"{{shape: box, size: [{sx:.4f}, {sy:.4f}, {sz:.4f}], at: [{x:.4f}, {y:.4f}, {z:.4f}], "
+                           f"yaw_deg: {math.degrees(yaw_rad):.3f}}}")
+
+    def add_block(self, x0, y0, x1, y1):
+        self.add_box(x1 - x0, y1 - y0, self.ceiling, (x0 + x1) / 2, (y0 + y1) / 2, 0)
+
+    def add_wall(self, upright, at, half, begin, end):
+        super().add_wall(upright, at, half, begin, end)
+        half = max(half, 0.03)
+        if upright:
+            self.add_block(at - half, begin, at + half, end)
+        else:
+            self.add_block(begin, at - half, end, at + half)
+
+    def furnish(self, count):
+        look = self.look
+        for _ in range(count):
+            x, y = look.uniform(0, self.width), look.uniform(0, self.height)
+            yaw_rad = look.choice([0, 0, 0, look.uniform(0, math.pi)])
+            kind = look.choice(["box", "table", "cylinder", "cushion", "shelf", "box"])
+            sx, sy = look.uniform(0.2, 1.6), look.uniform(0.2, 0.8)
+            if kind == "cylinder":
+                self.add_cylinder(x, y, look.uniform(0.08, 0.3), look.uniform(0.4, 2.2))
+                continue
+            if kind == "table":
+                self.add_table(sx, sy, look.uniform(0.45, 1.1), x, y, yaw_rad)
+            elif kind == "cushion":
+                tall = look.uniform(0.4, 1.0)
+                self.shapes.append(f"{{shape: superellipsoid, size: [{sx:.4f}, {sy:.4f}, {tall:.4f}], upright: 0.6, "
+                                   f"level: 0.4, at: [{x:.4f}, {y:.4f}, {tall / 2:.4f}], "
+                                   f"yaw_deg: {math.degrees(yaw_rad):.3f}}}")
+            else:
+                tall = look.uniform(1.2, 2.2) if kind == "shelf" else look.uniform(0.25, 1.5)
+                self.add_box(sx, sy, tall, x, y, 0, yaw_rad)
+            self.add_polygon(corners(sx, sy, x, y, yaw_rad))
+
+    def add_cylinder(self, x, y, radius, tall):
+        self.shapes.append(f"{{shape: cylinder, radius_m: {radius:.4f}, height_m: {tall:.4f}, "
+                           f"at: [{x:.4f}, {y:.4f}, 0]}}")
+        self.add_polygon([(x + radius * math.cos(k * math.pi / 8), y + radius * math.sin(k * math.pi / 8))
+                          for k in range(16)])
+
+    def add_table(self, sx, sy, tall, x, y, yaw_rad):
+        self.add_box(sx, sy, 0.04, x, y, tall - 0.04, yaw_rad)
+        for leg_x, leg_y in corners(sx - 0.06, sy - 0.06, x, y, yaw_rad):
+            self.add_box(0.05, 0.05, tall - 0.04, leg_x, leg_y, 0, yaw_rad)
+
+
+def corners(sx, sy, x, y, yaw_rad):
+    c, s = math.cos(yaw_rad), math.sin(yaw_rad)
+    return [(x + c * u - s * v, y + s * u + c * v)
+            for u, v in [(-sx / 2, -sy / 2), (sx / 2, -sy / 2), (sx / 2, sy / 2), (-sx / 2, sy / 2)]]
+
+
+def wander(chance, count, sigma, frames):
+    """An error that lasts about so many frames (Ornstein-Uhlenbeck), smoothed over half a second."""
+    keeps = math.exp(-1 / frames)
+    values, value = np.zeros(count), chance.normal() * sigma
+    for i in range(count):
+        values[i] = value
+        value = keeps * value + math.sqrt(1 - keeps * keeps) * chance.normal() * sigma
+    window = np.hanning(15)
+    return np.convolve(np.pad(values, 7, mode="edge"), window / window.sum(), "valid")
+
+
+def quaternion(rotation):
+    """x y z w, w >= 0 (Bar-Itzhack 2000)."""
+    m = rotation
+    k = np.array([[m[0, 0] - m[1, 1] - m[2, 2], 0, 0, 0], [m[1, 0] + m[0, 1], m[1, 1] - m[0, 0] - m[2, 2], 0, 0],
+                  [m[2, 0] + m[0, 2], m[2, 1] + m[1, 2], m[2, 2] - m[0, 0] - m[1, 1], 0],
+                  [m[2, 1] - m[1, 2], m[0, 2] - m[2, 0], m[1, 0] - m[0, 1], m.trace()]]) / 3
+    values, vectors = np.linalg.eigh(k)
+    q = vectors[:, np.argmax(values)]
+    return q if q[3] > 0 else -q
+
+
+def camera_path(poses, drawn, number):
+    """TUM lines of a camera carried along poses x y yaw."""
+    chance = np.random.default_rng(number + 99000)
+    hand, count = drawn["hand"], len(poses)
+    up = wander(chance, count, 0.06 if hand else 0.0, 60)
+    pitch = wander(chance, count, 4 if hand else 0.15, 45)
+    roll = wander(chance, count, 2.5 if hand else 0.15, 45)
+    aside = wander(chance, count, 6 if hand else 0, 60)
+    for k, (x, y, yaw) in enumerate(poses):
+        a, b, c = yaw + math.radians(aside[k]), math.radians(-(drawn["pitch"] + pitch[k])), math.radians(roll[k])
+        about_z = np.array([[math.cos(a), -math.sin(a), 0], [math.sin(a), math.cos(a), 0], [0, 0, 1]])
+        about_y = np.array([[math.cos(b), 0, math.sin(b)], [0, 1, 0], [-math.sin(b), 0, math.cos(b)]])
+        about_x = np.array([[1, 0, 0], [0, math.cos(c), -math.sin(c)], [0, math.sin(c), math.cos(c)]])
+        yield "%.6f %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n" % (
+            k / buildings.RATE_HZ, x, y, drawn["height"] + up[k], *quaternion(about_z @ about_y @ about_x @ OPTICAL))
+
+
+def settings_of(number):
+    chance = random.Random(number * 1000 + 7)
+    camera, noise = chance.choice([("icl_nuim", "handa"), ("tum_fr1", "nguyen"), ("d435", "d435"),
+                                   ("kinect_v2", "kinect_v2"), ("azure", "azure"), ("kinect_v1", "nguyen")])
+    hand = chance.random() < 0.4
+    profile = chance.choice(["orb_slam2", "planar_slam", "planar_slam_mh", "orb_slam2_measured",
+                             "planar_slam_measured", "orb_slam2_desk"])
+    height = chance.uniform(0.9, 1.5) if hand else chance.uniform(0.25, 1.2)
+    pitch = chance.choice([0, -5, -15, 5])
+    measured = profile.endswith(("measured", "desk"))
+    return {"camera": camera, "noise": noise, "hand": hand, "profile": profile, "height": height, "pitch": pitch,
+            "drift_scale": chance.choice([None, 1, 3] if measured else [None, 5, 15, 40]),
+            "scenario": chance.choice([None, None, "none", "late", "missed", "false"]),
+            "flying": chance.choice([0, 0, 0.3]), "shadow": chance.choice([0, 0.075]),
+            "alike": chance.choice([0, 0, 3]), "lost": chance.choice([0, 0, 0, 0.02])}
+
+
+def experiment(number, drawn):
+    lines = [f"scene: ./s{number}.yaml", f"trajectory: ./s{number}.path.txt", f"seed: {number + 1}",
+             f"sensor: {{camera: {drawn['camera']}, noise: {drawn['noise']}, flying_pixels: {drawn['flying']}, "
+             f"shadow_baseline_m: {drawn['shadow']}, noise_correlation_px: {drawn['alike']}}}",
+             "slam:", f"  profile: {drawn['profile']}"]
+    if drawn["drift_scale"]:
+        lines.append(f"  drift_scale: {drawn['drift_scale']}")
+    if drawn["scenario"]:
+        lines.append(f"  loops: {{scenario: {drawn['scenario']}}}")
+    if drawn["lost"]:
+        lines += [f"  lost_rate_hz: {drawn['lost']}", "  lost_mean_s: 1", "  relocalisation_translation_m: 0.05",
+                  "  relocalisation_rotation_deg: 2"]
+    return "".join(line + "\n" for line in lines)
+
+
+def write_scene(number, folder, drawn):
+    # every third building is one of 20 to 45 m
+    room = Room(number if number % 3 != 2 else number + 1)
+    poses = buildings.way_through(room)
+    if poses is None:
+        return False
+    with buildings.written(f"{folder}/s{number}.yaml") as file:
+        file.write("floor_z_m: 0\nshapes:\n" + "".join(f"  - {shape}\n" for shape in room.shapes))
+    with buildings.written(f"{folder}/s{number}.path.txt") as file:
+        file.writelines(camera_path(poses[:MOST_FRAMES], drawn, number))
+    with buildings.written(f"{folder}/s{number}.run.yaml") as file:
+        file.write(experiment(number, drawn))
+    return True
+
+
+def scores_of(folder):
+    """Mean error of SLAM, online and final, m, and F1 of observable walls."""
+    with open(folder + "/metrics.json", encoding="ascii") as file:
+        metrics = json.load(file)
+    errors = [metrics["trajectory"][name]["mean_euclidean_m"] for name in ("slam", "online", "est")]
+    return [*errors, metrics["map"]["observable"]["occupied"]["f1"]]
+
+
+def refuse(what):
+    print(f"random_scenes.py: {what}", file=sys.stderr)
+    return 2
+
+
+def main():
+    own = (sys.argv[1:] + ["--"]).index("--")
+    arguments, more = sys.argv[1:own + 1], sys.argv[own + 2:]
+    if len(arguments) != 4:
+        print(__doc__, file=sys.stderr)
+        return 2
+    program, folder, *numbers = arguments
+    if not os.access(program, os.X_OK):
+        return refuse(f"{program}: is no program (./dev build)")
+    if not all(number.isdecimal() for number in numbers):
+        return refuse(f"FIRST COUNT: are '{' '.join(numbers)}', must be whole numbers")
+    first, count = int(numbers[0]), int(numbers[1])
+    try:
+        os.makedirs(folder, exist_ok=True)
+    except OSError as error:
+        return refuse(f"{folder}: {error.strerror}")
+    rows = []
+    for number in range(first, first + count):
+        drawn, name = settings_of(number), f"{folder}/s{number}"
+        if not os.path.exists(name + ".run.yaml") and not write_scene(number, folder, drawn):
+            continue
+        done = subprocess.run([program, "run", name + ".run.yaml", "-o", name + ".out", "--force", *more],
+                              capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            return refuse(done.stderr.strip())
+        rows.append(scores_of(name + ".out"))
+        print(f"s{number}", *(f"{key} {value}" for key, value in drawn.items()),
+              "slam %.4f online %.4f final %.4f f1 %.3f" % tuple(rows[-1]), flush=True)
+    if not rows:
+        return refuse("no building has room for a way")
+    off = np.array(rows)
+    print(f"{len(rows)} runs", *("%s of slam %.4f online %.4f final %.4f f1 %.3f;" % (name, *middle(off, axis=0))
+                                 for name, middle in (("mean", np.mean), ("median", np.median))),
+          f"worse than SLAM by more than 1 cm: online {int((off[:, 1] > off[:, 0] + 0.01).sum())}, "
+          f"final {int((off[:, 2] > off[:, 0] + 0.01).sum())}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
