@@ -17,7 +17,8 @@ bool SeesSomething(const DepthImage& image) {
 
 // By their bits: some drivers write NaN for invalid pixels, which compares unequal to itself.
 bool AreSame(const std::vector<float>& a, const std::vector<float>& b) {
-  return !a.empty() && a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+  return !a.empty() && a.size() == b.size() &&
+         std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
 }  // namespace
