@@ -370,7 +370,8 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const
       frame.slam_motion =
           Between(BaseOf(*before.slam_from_camera), BaseOf(*record.slam_from_camera));
     } else {
-      frame.gap_share = std::sqrt(gap_variance);
+      // Zero: a loop of this very frame decides where it is, not a guess.
+      frame.gap_share = gap_variance > 0.0 ? std::sqrt(gap_variance) : 1.0;
     }
   }
   return frame;
