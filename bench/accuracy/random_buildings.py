@@ -235,30 +235,43 @@ def settings_of(number, hard):
 
 
 def refuse(what):
-    print(f"random_buildings.py: {what}", file=sys.stderr)
+    print(f"{os.path.basename(sys.argv[0])}: {what}", file=sys.stderr)
     return 2
 
 
-def main():
+def read_command(usage, target, flag=None):
+    """PROGRAM FOLDER FIRST COUNT [FLAG] [-- ARGUMENT ...]: (program, folder, the numbers, whether the flag was given, the
+    arguments); None where it was refused. FOLDER is made."""
     own = (sys.argv[1:] + ["--"]).index("--")
     arguments, more = sys.argv[1:own + 1], sys.argv[own + 2:]
-    hard = "--hard" in arguments
-    arguments = [a for a in arguments if a != "--hard"]
+    flagged = flag in arguments
+    arguments = [a for a in arguments if a != flag]
     if len(arguments) != 4:
-        print(__doc__, file=sys.stderr)
-        return 2
+        print(usage, file=sys.stderr)
+        return None
     program, folder, *numbers = arguments
     if not os.access(program, os.X_OK):
-        return refuse(f"{program}: is no program (./dev build laser_accuracy)")
+        refuse(f"{program}: is no program (./dev build {target})")
+        return None
     if not all(number.isdecimal() for number in numbers):
-        return refuse(f"FIRST COUNT: are '{' '.join(numbers)}', must be whole numbers")
-    program, first, count = os.path.abspath(program), int(numbers[0]), int(numbers[1])
+        refuse(f"FIRST COUNT: are '{' '.join(numbers)}', must be whole numbers")
+        return None
     try:
         os.makedirs(folder, exist_ok=True)
     except OSError as error:
-        return refuse(f"{folder}: {error.strerror}")
+        refuse(f"{folder}: {error.strerror}")
+        return None
+    first, count = int(numbers[0]), int(numbers[1])
+    return os.path.abspath(program), folder, range(first, first + count), flagged, more
+
+
+def main():
+    command = read_command(__doc__, "laser_accuracy", "--hard")
+    if command is None:
+        return 2
+    program, folder, numbers, hard, more = command
     online, final, priors = [], [], []
-    for number in range(first, first + count):
+    for number in numbers:
         name = f"{folder}/w{number}"
         if not os.path.exists(name + ".truth.txt") and not write_world(number, name):
             continue

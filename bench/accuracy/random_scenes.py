@@ -19,7 +19,8 @@ import sys
 
 import numpy as np
 
-import random_buildings as buildings
+sys.dont_write_bytecode = True  # nothing beside the script
+import random_buildings as buildings  # noqa: E402
 
 MOST_FRAMES = 1800
 OPTICAL = np.array([[0, 0, 1], [-1, 0, 0], [0, -1, 0]])  # the camera's axes in those of a body: x ahead, z up
@@ -189,41 +190,25 @@ def scores_of(folder):
     return [*errors, metrics["map"]["observable"]["occupied"]["f1"]]
 
 
-def refuse(what):
-    print(f"random_scenes.py: {what}", file=sys.stderr)
-    return 2
-
-
 def main():
-    own = (sys.argv[1:] + ["--"]).index("--")
-    arguments, more = sys.argv[1:own + 1], sys.argv[own + 2:]
-    if len(arguments) != 4:
-        print(__doc__, file=sys.stderr)
+    command = buildings.read_command(__doc__, "depthgrid")
+    if command is None:
         return 2
-    program, folder, *numbers = arguments
-    if not os.access(program, os.X_OK):
-        return refuse(f"{program}: is no program (./dev build)")
-    if not all(number.isdecimal() for number in numbers):
-        return refuse(f"FIRST COUNT: are '{' '.join(numbers)}', must be whole numbers")
-    first, count = int(numbers[0]), int(numbers[1])
-    try:
-        os.makedirs(folder, exist_ok=True)
-    except OSError as error:
-        return refuse(f"{folder}: {error.strerror}")
+    program, folder, numbers, _, more = command
     rows = []
-    for number in range(first, first + count):
+    for number in numbers:
         drawn, name = settings_of(number), f"{folder}/s{number}"
         if not os.path.exists(name + ".run.yaml") and not write_scene(number, folder, drawn):
             continue
         done = subprocess.run([program, "run", name + ".run.yaml", "-o", name + ".out", "--force", *more],
                               capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            return refuse(done.stderr.strip())
+            return buildings.refuse(done.stderr.strip())
         rows.append(scores_of(name + ".out"))
         print(f"s{number}", *(f"{key} {value}" for key, value in drawn.items()),
               "slam %.4f online %.4f final %.4f f1 %.3f" % tuple(rows[-1]), flush=True)
     if not rows:
-        return refuse("no building has room for a way")
+        return buildings.refuse("no building has room for a way")
     off = np.array(rows)
     print(f"{len(rows)} runs", *("%s of slam %.4f online %.4f final %.4f f1 %.3f;" % (name, *middle(off, axis=0))
                                  for name, middle in (("mean", np.mean), ("median", np.median))),

@@ -112,9 +112,9 @@ std::vector<fs::directory_entry> FilesIn(const fs::path& root) {
 
 // The user chose the folder and may keep other files with this extension in it (ICL-NUIM's have
 // it): only files that a cache wrote may be removed.
-std::vector<Entry> EntriesIn(const fs::path& root) {
+std::vector<Entry> EntriesOf(const std::vector<fs::directory_entry>& files) {
   std::vector<Entry> entries;
-  for (const fs::directory_entry& file : FilesIn(root)) {
+  for (const fs::directory_entry& file : files) {
     if (!IsEntry(file.path())) continue;
     std::error_code vanished;  // another program may have removed it
     Entry entry{file.path(), file.last_write_time(vanished), file.file_size(vanished)};
@@ -125,10 +125,10 @@ std::vector<Entry> EntriesIn(const fs::path& root) {
 
 // Files that killed programs did not finish. A program that is stopped for so long and continues
 // does not find its file again and stores nothing.
-void RemoveOldHalves(const fs::path& root) {
+void RemoveOldHalves(const std::vector<fs::directory_entry>& files) {
   constexpr auto kLongestWrite = std::chrono::hours(1);
   const auto latest = fs::file_time_type::clock::now() - kLongestWrite;
-  for (const fs::directory_entry& file : FilesIn(root)) {
+  for (const fs::directory_entry& file : files) {
     if (!IsHalf(file.path())) continue;
     std::error_code ignored;
     const auto written = file.last_write_time(ignored);
@@ -148,8 +148,9 @@ DepthCache::DepthCache(const std::string& folder, const std::string& scene_hash,
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw InputError(folder, "cannot be used as a cache: " + error.message());
-  RemoveOldHalves(root_);
-  for (const Entry& entry : EntriesIn(root_)) used_bytes_ += entry.bytes;
+  const std::vector<fs::directory_entry> files = FilesIn(root_);
+  RemoveOldHalves(files);
+  for (const Entry& entry : EntriesOf(files)) used_bytes_ += entry.bytes;
 }
 
 std::uint64_t DepthCache::BytesOf(bool with_incidence) const {
@@ -172,7 +173,7 @@ void DepthCache::MakeRoomFor(const Trajectory& world_from_camera, bool with_inci
     missing.insert(EntryOf(pose.world_from_camera, with_incidence));
   }
   // Frames that are already stored are neither removed nor need room.
-  std::vector<Entry> entries = EntriesIn(root_);
+  std::vector<Entry> entries = EntriesOf(FilesIn(root_));
   std::erase_if(entries, [&](const Entry& entry) { return missing.erase(entry.path) > 0; });
   const std::uint64_t wanted = missing.size() * BytesOf(with_incidence);
   // Entries of this scene and camera are removed last, because the next run likely needs them.

@@ -18,11 +18,12 @@ constexpr double kMinRelativeSigma = 2e-4;
 constexpr double kSigmaOfMedianDifference = 1.0 / (0.674489750196 * 2.449489742783);
 // A range bin with fewer samples borrows from its neighbours.
 constexpr std::uint32_t kMinSamples = 200;
-// With so many times as many samples well within the reach, the first value does no harm near it.
+// With so many times as many samples well within the reach, the first value does no harm near it;
+// with as many only, the wall of range_cutoff_test.cc was still turned.
 constexpr std::uint64_t kMuchWhole = 10;
 // Of a wall half a sigma before the reach what is left has .7 of the noise (range_cutoff.h).
 constexpr double kOfCutSigma = 1.4;
-// Enough for sigma to a sixth.
+// Enough for sigma to a fifth.
 constexpr std::uint32_t kFewSamples = 30;
 // Three beams count as evenly spaced when their gaps agree within this share.
 constexpr float kSpacingTolerance = 0.05F;

@@ -32,13 +32,14 @@ class RangeNoise {
   static constexpr int kValueBins = 160;  // eight an octave from 2^-19: up to 2
   static constexpr int kStrides = 6;      // 1 to 32
 
-  // Second differences of beams one stride apart.
+  // Second differences, by range and by size.
   struct Samples {
     std::array<std::array<std::uint32_t, kValueBins>, kRangeBins> histogram{};
     std::array<std::uint32_t, kRangeBins> count{};
 
     std::uint64_t Total() const;
   };
+  // Those of beams one stride apart, and what they show.
   struct Differences {
     Samples whole;     // well within the sensor's reach
     Samples near_cut;  // so near the reach that the largest may be missing

@@ -7,6 +7,7 @@
 
 #include <csignal>
 
+#include "eval/files/one_result.h"
 #include "eval/files/run_files.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
@@ -121,6 +122,19 @@ TEST_F(OutputFolderTest, WhatWasReplacedInPartIsNoResult) {
   write({});
   RequireRunFolder(Path("out"));
   EXPECT_EQ(Everything(), (Names{"out", "out/run.yaml"}));
+}
+
+TEST_F(OutputFolderTest, AMarkOfAStudyIsOneOfItsCases) {
+  fs::create_directories(Path("study/case/frames"));
+  MarkAsReplaced(Path("study"));
+  for (const char* of_study : {"study", "study/", "study/case", "study/case/"}) {
+    EXPECT_THAT(RefusalOf([&] { RequireOneResult(Path(of_study)); }),
+                testing::HasSubstr("files of two results"))
+        << of_study;
+  }
+  RequireOneResult(Path("study/case/frames"));
+  UnmarkAsReplaced(Path("study"));
+  RequireOneResult(Path("study/case"));
 }
 
 TEST_F(OutputFolderTest, WhatCannotTakeItsPlaceIsKept) {

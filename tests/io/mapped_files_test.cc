@@ -138,6 +138,7 @@ TEST_F(MappedFilesTest, AKilledSaveLeavesTheEarlierMapWhole) {
     WriteMapped(folder_, later);
   };
   EXPECT_EXIT(save_and_be_killed(), testing::KilledBySignal(SIGXFSZ), "");
+  EXPECT_TRUE(Has("matched.next.bin"));  // it was killed at the drawn scans
   EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{3.0F, 3.0F}));
   WriteMapped(folder_, later);
   EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{4.0F, 4.0F, 4.0F}));

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mapper/core/rng.h"
 #include "tests/mapper/mapped_frame.h"
 #include "tests/mapper/match_world.h"
@@ -57,11 +59,12 @@ TEST(Place, HasNoMoreCellsWhereTheyAreFiner) {
     SCOPED_TRACE(resolution_m);
     const double most_cells = 2.0 * kPlaceSightM / 0.05;
     EXPECT_EQ(PointsOfPlace(frames, {0}, 0, resolution_m).size(), seen_hits);
-    EXPECT_LE(DrawPlace(frames, {0}, 0, resolution_m).geometry.width_cells, most_cells);
+    const GridGeometry drawn = DrawPlace(frames, {0}, 0, resolution_m).geometry;
+    EXPECT_LE(std::max(drawn.width_cells, drawn.height_cells), most_cells);
     overlap.resolution_m = resolution_m;
     const SeenPlace seen = SeenFrom(frames, {0}, 0, overlap);
     EXPECT_EQ(seen.points.size(), seen_hits);
-    EXPECT_LE(seen.geometry.width_cells, most_cells);
+    EXPECT_LE(std::max(seen.geometry.width_cells, seen.geometry.height_cells), most_cells);
   }
 }
 
