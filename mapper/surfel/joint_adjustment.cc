@@ -240,7 +240,8 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops,
   result.motion_sigma = MotionSigma(unit, map_from_group, AsJudged(shares, options));
   result.motion_seen = SeenSigma(result.motion_sigma, shares);
   if (options.judge_stretches) {
-    result.motion_growth = MotionGrowth(unit, motions, map_from_group, shares, result.motion_sigma);
+    result.motion_growth = MotionGrowth(unit, motions, map_from_group, shares, result.motion_sigma,
+                                        result.motion_growth);
   }
   if (options.learn_persistence) {
     result.motion_persistence = MotionPersistence(unit, map_from_group, shares);

@@ -135,7 +135,8 @@ std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
                                           const std::vector<GroupLink>& believed,
                                           const std::vector<Pose2>& map_from_group,
                                           const std::vector<Eigen::Vector3d>& shares_seen,
-                                          const Eigen::Vector3d& sigma) {
+                                          const Eigen::Vector3d& sigma,
+                                          const std::vector<Eigen::Vector3d>& before) {
   std::vector<Eigen::Vector3d> growth(unit.size(), Eigen::Vector3d::Ones());
   std::vector<Eigen::Vector3d> errors;
   for (const GroupLink& link : believed) {
@@ -152,7 +153,9 @@ std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
       // Size of the errors over that expected.
       const double ratio = std::move(spread).Sigma(kWhollyCounted);
       const double times = ratio * believed[i].sigma[axis] / (unit[i].sigma[axis] * sigma[axis]);
-      if (ratio > 1.0 && times > kLeastGrowth) growth[i][axis] = times;
+      // A sigma that has grown may also shrink: once it is right, the ratio is around 1.
+      const bool grown = !before.empty() && before[i][axis] > 1.0;
+      if ((ratio > 1.0 || grown) && times > kLeastGrowth) growth[i][axis] = times;
     }
   }
   return growth;

@@ -45,11 +45,12 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
 // end, as most of its motions are right. `believed`: the links as the poses were adjusted with
 // them, one for each of `unit`, growth included. Their residuals r are compared with the expected
 // r^2 = share * sigma^2, so the growth shows even where SLAM is trusted far too much and hardly
-// lets the poses move.
+// lets the poses move. `before`: the growth in `believed`; empty if there is none.
 std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
                                           const std::vector<GroupLink>& believed,
                                           const std::vector<Pose2>& map_from_group,
                                           const std::vector<Eigen::Vector3d>& shares_seen,
-                                          const Eigen::Vector3d& sigma);
+                                          const Eigen::Vector3d& sigma,
+                                          const std::vector<Eigen::Vector3d>& before);
 
 }  // namespace depthgrid

@@ -191,7 +191,8 @@ TEST(MotionGrowth, IsWhereSlamErrsByFarMoreThanElsewhere) {
     poses.push_back(poses.back() * unit[static_cast<std::size_t>(i)].first_from_second *
                     Pose2{error_m, 0.0, 0.0});
   }
-  const std::vector<Eigen::Vector3d> growth = MotionGrowth(unit, believed, poses, shares, sigma);
+  const std::vector<Eigen::Vector3d> growth =
+      MotionGrowth(unit, believed, poses, shares, sigma, {});
   for (int i = 0; i < 60; ++i) {
     const double forward = growth[static_cast<std::size_t>(i)].x();
     if (i >= 32 && i < 38) {
@@ -207,9 +208,29 @@ TEST(MotionGrowth, IsWhereSlamErrsByFarMoreThanElsewhere) {
     jumped.push_back(jumped.back() * unit[i].first_from_second *
                      Pose2{i == 20 ? 0.5 : 0.0005, 0.0, 0.0});
   }
-  for (const Eigen::Vector3d& times : MotionGrowth(unit, believed, jumped, shares, sigma)) {
+  for (const Eigen::Vector3d& times : MotionGrowth(unit, believed, jumped, shares, sigma, {})) {
     EXPECT_EQ(times, Eigen::Vector3d::Ones());
   }
+}
+
+// Once grown, the errors are about as large as believed, in half of the rounds a little smaller.
+// Growth that is dropped then would be there in every second round only.
+TEST(MotionGrowth, FollowsErrorsThatAreSmallerThanBelieved) {
+  const std::vector<GroupLink> unit = ChainOf(21, Eigen::Vector3d::Ones()).links;
+  const std::vector<GroupLink> believed = ChainOf(21, Eigen::Vector3d::Constant(0.1)).links;
+  const std::vector<Eigen::Vector3d> shares(20, Eigen::Vector3d::Constant(1.0));
+  const std::vector<Eigen::Vector3d> before(20, Eigen::Vector3d::Constant(100.0));
+  const Eigen::Vector3d sigma = Eigen::Vector3d::Constant(0.001);
+  const auto growth_at = [&](double error_m) {
+    std::vector<Pose2> poses{{0.0, 0.0, 0.0}};
+    for (const GroupLink& link : unit) {
+      poses.push_back(poses.back() * link.first_from_second * Pose2{error_m, 0.0, 0.0});
+    }
+    return MotionGrowth(unit, believed, poses, shares, sigma, before)[10].x();
+  };
+  EXPECT_NEAR(growth_at(0.1), 100.0 * 1.4826, 1.0);
+  EXPECT_NEAR(growth_at(0.05), 50.0 * 1.4826, 1.0);
+  EXPECT_EQ(growth_at(0.002), 1.0);
 }
 
 }  // namespace
