@@ -6,6 +6,7 @@
 
 #include "mapper/core/drives.h"
 #include "mapper/core/error.h"
+#include "mapper/io/file.h"
 #include "mapper/io/scan_file.h"
 
 namespace depthgrid {
@@ -56,17 +57,31 @@ std::optional<std::vector<StoredScan>> MatchedOf(const std::vector<StoredScan>& 
   return matched;
 }
 
+// Those of a save that was killed at its last step. The matched.bin there is that of the map before
+// then, whatever is in it, even damage.
+std::optional<std::vector<StoredScan>> MatchedNext(const std::vector<StoredScan>& drawn,
+                                                   const std::string& folder) {
+  try {
+    return MatchedOf(drawn, NextMatchedPath(folder));
+  } catch (const InputError&) {  // damaged
+    return std::nullopt;
+  }
+}
+
+// Whether the map in the folder is one with MatchedNext().
+bool HasMatchedNext(const std::string& folder) {
+  if (!fs::exists(NextMatchedPath(folder))) return false;
+  try {
+    return MatchedNext(ReadScans(DrawnPath(folder)), folder).has_value();
+  } catch (const InputError&) {  // no map, or one that cannot be read
+    return false;
+  }
+}
+
 // Does the last step of a save that was killed before it, or removes what it did not get to use.
 void FinishKilledSave(const std::string& folder) {
   const std::string next = NextMatchedPath(folder);
-  if (!fs::exists(next)) return;
-  bool is_used = false;
-  try {
-    const std::vector<StoredScan> drawn = ReadScans(DrawnPath(folder));
-    is_used = !MatchedOf(drawn, MatchedPath(folder)) && MatchedOf(drawn, next);
-  } catch (const InputError&) {  // a map that cannot be read is not worth keeping
-  }
-  if (is_used) {
+  if (HasMatchedNext(folder)) {
     fs::rename(next, MatchedPath(folder));
   } else {
     fs::remove(next);
@@ -94,6 +109,7 @@ void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& fram
   WriteScans(DrawnPath(folder), drawn);
   if (same) {
     fs::remove(MatchedPath(folder));
+    SyncToDisk(folder);  // never the old matched scans alone beside the new drawn ones
     fs::remove(next);
   } else {
     fs::rename(next, MatchedPath(folder));
@@ -104,8 +120,9 @@ std::vector<MappedFrame> ReadMapped(const std::string& folder) {
   const std::vector<StoredScan> drawn = ReadScans(DrawnPath(folder));
   if (drawn.empty()) throw InputError(DrawnPath(folder), "holds no scan");
   const std::string matched_path = MatchedPath(folder);
-  auto matched = MatchedOf(drawn, matched_path);
-  if (!matched) matched = MatchedOf(drawn, NextMatchedPath(folder));
+  auto matched = MatchedNext(drawn, folder);
+  if (!matched) matched = MatchedOf(drawn, matched_path);
+  if (!matched) matched = MatchedOf(drawn, NextMatchedPath(folder));  // it throws if it is damaged
   if (!matched && fs::exists(matched_path)) {
     throw InputError(
         matched_path,

@@ -172,5 +172,29 @@ TEST_F(MappedFilesTest, EveryStepOfASaveLeavesOneOfTheMaps) {
   EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{2.0F, 2.0F}));
 }
 
+// Damage to one of the two files of matched scans does not hide the other, which is the map's.
+TEST_F(MappedFilesTest, ADamagedFileOfMatchedScansHidesNoWholeOne) {
+  namespace fs = std::filesystem;
+  const auto damage = [&](const char* name) {
+    fs::resize_file(File(name), fs::file_size(File(name)) - 1);
+  };
+  const std::vector<float> ranges_m(2, 3.0F);
+  const auto killed_at_the_last_step = [&] {
+    WriteMapped(folder_, FramesMatchedAt({0, 1}, 3.0F));
+    fs::copy_file(File("matched.bin"), File("matched.next.bin"));
+  };
+  killed_at_the_last_step();
+  damage("matched.next.bin");
+  EXPECT_EQ(MatchedRangesOf(folder_), ranges_m);
+  fs::remove(File("matched.next.bin"));
+  killed_at_the_last_step();
+  damage("matched.bin");
+  EXPECT_EQ(MatchedRangesOf(folder_), ranges_m);
+  damage("matched.next.bin");
+  EXPECT_EQ(RefusalOf([&] { ReadMapped(folder_); }), File("matched.bin") + ": is truncated");
+  fs::remove(File("matched.bin"));
+  EXPECT_EQ(RefusalOf([&] { ReadMapped(folder_); }), File("matched.next.bin") + ": is truncated");
+}
+
 }  // namespace
 }  // namespace depthgrid
