@@ -92,6 +92,10 @@ std::uint64_t ChecksumOf(std::string_view bytes) {
   return hash.value();
 }
 
+bool IsScans(const fs::path& file) {
+  return file.extension() == kScansExtension && ContentHash::IsHex(file.stem().string());
+}
+
 }  // namespace
 
 ScanCache::ScanCache(const std::string& folder, std::uint64_t size_limit_bytes)
@@ -99,6 +103,7 @@ ScanCache::ScanCache(const std::string& folder, std::uint64_t size_limit_bytes)
   std::error_code error;
   fs::create_directories(folder_, error);
   if (error) throw InputError(folder, "cannot be used as a cache: " + error.message());
+  RemoveHalves(folder, IsScans);
 }
 
 fs::path ScanCache::PathOf(const std::string& key) const {
@@ -166,9 +171,8 @@ void ScanCache::MakeRoom(std::uint64_t bytes) const {
   std::uint64_t total = bytes;
   for (auto it = fs::directory_iterator(folder_, error); !error && it != fs::directory_iterator();
        it.increment(error)) {
-    std::error_code vanished;  // another program may have removed it
-    if (it->path().extension() != kScansExtension) continue;
-    if (!ContentHash::IsHex(it->path().stem().string())) continue;  // not written by a cache
+    std::error_code vanished;            // another program may have removed it
+    if (!IsScans(it->path())) continue;  // not written by a cache
     Entry entry{it->last_write_time(vanished), it->path(), it->file_size(vanished)};
     if (vanished) continue;
     total += entry.bytes;

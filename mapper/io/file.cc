@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -46,6 +47,20 @@ void RefuseCompressed(const std::string& path, std::string_view content) {
 std::string TemporaryName(const std::string& path) {
   static std::atomic<unsigned> counter{0};
   return fmt::format("{}.{}.{}.tmp", path, ::getpid(), counter.fetch_add(1));
+}
+
+// The name of the file that is to be made of one with a TemporaryName(); empty for other files.
+std::string TargetOf(std::string_view temporary) {
+  constexpr std::string_view kEnding = ".tmp";
+  if (!temporary.ends_with(kEnding)) return "";
+  std::string_view name = temporary.substr(0, temporary.size() - kEnding.size());
+  for (int numbers = 0; numbers < 2; ++numbers) {
+    const std::size_t point = name.find_last_not_of("0123456789");
+    const bool is_one = point != name.npos && name[point] == '.' && point + 1 < name.size();
+    if (!is_one) return "";
+    name = name.substr(0, point);
+  }
+  return std::string(name);
 }
 
 std::function<void(std::ostream&)> Writing(std::string_view content) {
@@ -146,11 +161,32 @@ void WriteFile(const std::string& path, const std::function<void(std::ostream&)>
 }
 
 void WriteFileToDisk(const std::string& path, const std::function<void(std::ostream&)>& write) {
+  const fs::path target = fs::absolute(path);
+  RemoveHalves(target.parent_path().string(),
+               [&target](const std::string& name) { return name == target.filename(); });
   WriteBesideAndRename(path, write, true);
 }
 
 void SyncToDisk(const std::string& path) {
   if (const int failure = FailureToSync(path)) FailWriting(path, failure);
+}
+
+// The number of the writer's process says nothing: it may run in another container or on another
+// machine. A program that is stopped for an hour and goes on fails to write.
+void RemoveHalves(const std::string& folder,
+                  const std::function<bool(const std::string& name)>& is_target) {
+  constexpr auto kLongestPause = std::chrono::hours(1);  // between two writes to one file
+  const auto latest = fs::file_time_type::clock::now() - kLongestPause;
+  std::error_code error;
+  for (auto file = fs::directory_iterator(folder, error);
+       !error && file != fs::directory_iterator(); file.increment(error)) {
+    const std::string target = TargetOf(file->path().filename().string());
+    if (target.empty() || !is_target(target)) continue;
+    std::error_code vanished;
+    if (!fs::is_regular_file(file->symlink_status(vanished))) continue;
+    const auto written = file->last_write_time(vanished);
+    if (!vanished && written < latest) fs::remove(file->path(), vanished);
+  }
 }
 
 }  // namespace depthgrid

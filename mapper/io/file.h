@@ -45,4 +45,9 @@ void WriteFileToDisk(const std::string& path, const std::function<void(std::ostr
 // passed over: a file system that cannot do that, and what cannot be opened to be read.
 void SyncToDisk(const std::string& path);
 
+// Removes what killed programs left of writing files of `folder` whose names `is_target` holds for:
+// those beside them, once they are an hour old. WriteFileToDisk() does so for its own file.
+void RemoveHalves(const std::string& folder,
+                  const std::function<bool(const std::string& name)>& is_target);
+
 }  // namespace depthgrid

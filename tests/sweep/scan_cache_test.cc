@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "eval/sweep/scan_maker.h"
 #include "eval/sweep/scan_set.h"
 #include "tests/io/temporary_folder.h"
@@ -48,6 +50,20 @@ TEST_F(ScanCacheTest, GivesBackWhatWasStored) {
   ASSERT_TRUE(loaded.has_value());
   ExpectSame(Frames(), *loaded);
   EXPECT_FALSE(cache.Load("b").has_value());
+}
+
+TEST_F(ScanCacheTest, HalvesOfKilledProgramsGoOthersStay) {
+  namespace fs = std::filesystem;
+  const auto is_left = [&](const std::string& name, int minutes) {
+    Write(name, "half");
+    fs::last_write_time(Path(name),
+                        fs::file_time_type::clock::now() - std::chrono::minutes(minutes));
+    const ScanCache cache(Path("cache"));
+    return fs::exists(Path(name));
+  };
+  EXPECT_FALSE(is_left("cache/0123456789abcdef.scans.4711.0.tmp", 61));
+  EXPECT_TRUE(is_left("cache/0123456789abcdef.scans.4711.1.tmp", 59));
+  EXPECT_TRUE(is_left("cache/mine.scans.4711.0.tmp", 9999));
 }
 
 TEST_F(ScanCacheTest, DamageIsNoEntry) {
