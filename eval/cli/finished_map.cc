@@ -12,6 +12,7 @@
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/core/median.h"
+#include "mapper/io/mapped_files.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -211,14 +212,15 @@ std::optional<std::string> DoubtOfHeight(const MapRequest& request, const Mappin
 }
 
 void KeepMap(const std::string& map, const OutputFolder& folder) {
-  const auto give_way = [&](const char* name) {
+  const auto give_way = [&](const char* name, const fs::path& kept) {
     fs::remove(folder.File(name));
-    const fs::path kept = fs::path(map) / name;
     if (fs::exists(kept)) fs::copy_file(kept, folder.File(name));
   };
-  for (const char* name : {"scans.bin", "matched.bin"}) give_way(name);
+  const fs::path prior = map;
+  give_way("scans.bin", prior / "scans.bin");
+  give_way("matched.bin", MatchedFileOf(map));
   if (WhyNotKept(map)) return;
-  for (const char* name : {"map.yaml", "map.pgm", "map.scale.png"}) give_way(name);
+  for (const char* name : {"map.yaml", "map.pgm", "map.scale.png"}) give_way(name, prior / name);
 }
 
 std::vector<std::string> DoubtsOfKeptMap(const MapRequest& request, const OccupancyMap& drawn) {

@@ -192,7 +192,7 @@ std::vector<std::string> InputsOf(const MapArguments& given, const MapRequest& r
                                      named.poses, named.final_poses,
                                      named.loops, request.settings.sequence.camera};
   if (!named.map.empty()) {
-    for (const char* name : {"run.yaml", "scans.bin", "matched.bin"}) {
+    for (const char* name : {"run.yaml", "scans.bin", "matched.bin", "matched.next.bin"}) {
       inputs.push_back((fs::path(named.map) / name).string());
     }
   }

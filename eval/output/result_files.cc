@@ -50,6 +50,7 @@ bool IsMapFile(const fs::path& relative) {
                               "frames.csv",
                               "scans.bin",
                               "matched.bin",
+                              "matched.next.bin",
                               "pose_graph.g2o",
                               "timing.csv",
                               "timing.json",

@@ -56,9 +56,9 @@ PriorMap ReadPriorRun(const std::string& folder) {
 
 std::string HashOfPriorRun(const std::string& folder) {
   ContentHash hash;
-  for (const char* name : {"scans.bin", "matched.bin"}) {
-    const fs::path path = fs::path(folder) / name;
-    if (fs::exists(path)) hash.Text(ReadFile(path.string()));
+  for (const std::string& path :
+       {(fs::path(folder) / "scans.bin").string(), MatchedFileOf(folder)}) {
+    if (fs::exists(path)) hash.Text(ReadFile(path));
   }
   return hash.Hex();
 }

@@ -143,4 +143,9 @@ std::vector<MappedFrame> ReadMapped(const std::string& folder) {
   return frames;
 }
 
+std::string MatchedFileOf(const std::string& folder) {
+  if (HasMatchedNext(folder)) return NextMatchedPath(folder);
+  return fs::exists(MatchedPath(folder)) ? MatchedPath(folder) : "";
+}
+
 }  // namespace depthgrid

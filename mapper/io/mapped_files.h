@@ -19,4 +19,8 @@ void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& fram
 // InputError for files that are missing, damaged, empty or of two maps.
 std::vector<MappedFrame> ReadMapped(const std::string& folder);
 
+// The file of the folder that ReadMapped() takes the matched scans from: matched.bin, or
+// matched.next.bin after a save that was killed; empty if there is none.
+std::string MatchedFileOf(const std::string& folder);
+
 }  // namespace depthgrid
