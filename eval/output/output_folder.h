@@ -47,7 +47,8 @@ class OutputFolder {
  private:
   void Take(const std::string& shown);
   void Clean() const;
-  void PutInPlace() const;
+  bool TakeName() const;
+  void PutInPlace();
   void RemoveSuperseded() const;
 
   std::filesystem::path target_;

@@ -1,8 +1,14 @@
-// A map whose save was killed.
+// A folder in which a result is replaced, and a map whose save was killed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
+#include "eval/output/output_folder.h"
+#include "mapper/io/end_task.h"
 #include "tests/eval/program.h"
+#include "tests/io/temporary_folder.h"
 
 namespace depthgrid {
 namespace {
@@ -39,6 +45,28 @@ TEST_F(HalfReplaced, AMapOfAKilledSaveIsHandedOnWhole) {
   }
   Succeed("map seq --up z -o m --force");
   EXPECT_THAT(FilesIn("m"), Not(Contains("matched.next.bin")));
+}
+
+class ReplacingFolder : public TemporaryFolderTest {};
+
+// Storing many files takes longer than a user waits. That they are removed is not timed: a busy
+// disk takes long for this, too.
+TEST_F(ReplacingFolder, IsEndedWhileFilesAreStored) {
+  Write("out/a.txt", "old");
+  const auto end_amid = [&] {
+    OutputFolder folder(Path("out"), true);
+    constexpr int kFiles = 1000;
+    for (int i = 0; i < kFiles; ++i) WriteFile(folder.File(std::to_string(i)), "new");
+    std::thread([&folder] { folder.Commit(); }).detach();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    const auto start = std::chrono::steady_clock::now();
+    const EndTask first_of_all([&] {
+      const auto waited = std::chrono::steady_clock::now() - start;
+      ::_exit(waited < std::chrono::milliseconds(500) ? 0 : 1);
+    });
+    DoEndTasks();
+  };
+  EXPECT_EXIT(end_amid(), testing::ExitedWithCode(0), "");
 }
 
 }  // namespace
