@@ -21,7 +21,7 @@ OutputFolder OpenOutput(const CommonArguments& arguments, ResultKind kind,
   const FileRule removed = FilesLeftBy(kind, folder);
   RequireInputsKept(
       folder, [&](const auto& file) { return written(file) || removed(file); }, inputs);
-  return OutputFolder(folder, arguments.force, removed);
+  return OutputFolder(folder, arguments.force, removed, MarkOf(kind));
 }
 
 }  // namespace depthgrid::cli

@@ -9,6 +9,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/files/one_grid.h"
+#include "eval/files/one_result.h"
 #include "eval/files/shell_word.h"
 #include "eval/metrics/cell_maps.h"
 #include "eval/metrics/map_metrics.h"
@@ -325,6 +326,9 @@ void PrintTable(const MapScore& score) {
 void EvalMap(const EvalMapArguments& arguments) {
   RequireNoFolder(arguments.reference, "truth_map.yaml");
   RequireNoFolder(arguments.estimate, "map.yaml");
+  for (const std::string& file : {arguments.reference, arguments.estimate, arguments.observable}) {
+    RequireOneResultAround(file);
+  }
   // All on the reference's grid; the reference is not resampled.
   const MapFile reference = ReadMap(arguments.reference);
   const Pose2& world_from_truth = reference.world_from_grid;

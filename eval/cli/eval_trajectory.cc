@@ -7,6 +7,7 @@
 #include "eval/doubts/clock_check.h"
 #include "eval/doubts/rotation_check.h"
 #include "eval/doubts/trajectory_doubts.h"
+#include "eval/files/one_result.h"
 #include "eval/files/trajectory_files.h"
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/trajectory_metrics.h"
@@ -197,6 +198,9 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   if (!arguments.errors.empty()) RequireNewFile(arguments.errors, arguments.force);
   if (arguments.force && arguments.errors.empty()) {
     Warn({"--force: has no effect without --errors"});
+  }
+  for (const std::string& file : {arguments.reference, arguments.estimate}) {
+    RequireOneResultAround(file);
   }
   TrajectoryFiles files = ReadTrajectoryFiles(arguments.reference, arguments.estimate);
   Warn(files.warnings);

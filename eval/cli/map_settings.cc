@@ -8,6 +8,7 @@
 
 #include "eval/experiment/idle_settings.h"
 #include "eval/experiment/shipped.h"
+#include "eval/files/one_result.h"
 #include "mapper/core/angle.h"
 #include "mapper/core/error.h"
 #include "mapper/io/number_rows.h"
@@ -79,6 +80,18 @@ void RefuseOtherInputs(const std::string& input, SequenceFormat format) {
     throw InputError(input,
                      "is the folder of a finished run, no recording; `--map` goes on in its map, "
                      "and the run.yaml in it makes it again");
+  }
+}
+
+// Images of two renders do not fit their poses, nor SLAM's poses its events. A map beside them that
+// was replaced in part is not read.
+void RequireOneSequence(const MapArguments& arguments) {
+  std::error_code error;  // such as: name too long
+  if (std::filesystem::is_directory(arguments.input, error)) {
+    RequireOneResult(arguments.input, {kMarkOfRender});
+  }
+  for (const std::string& file : {arguments.poses, arguments.final_poses, arguments.loops}) {
+    RequireOneResultAround(file, {kMarkOfRender, kMarkOfSlam});
   }
 }
 
@@ -173,6 +186,7 @@ MapRequest ReadMapRequest(const MapArguments& given) {
   request.arguments = WithFilesOf(settings, given);
   const MapArguments& arguments = request.arguments;
   RefuseOtherInputs(arguments.input, settings.sequence.format);
+  RequireOneSequence(arguments);
   request.start = PlaceOf(settings.start);
   RequireMapFor(request);
   RefuseMapMode(arguments);

@@ -85,7 +85,7 @@ void WriteElsewhere(const ReportArguments& arguments) {
   RequireNamesFree(arguments.output, ResultKind::kPage);
   RequireNoLinks(arguments.output);
   RequireNoneButAPage(arguments.output + "/report.html");
-  OutputFolder output(arguments.output, arguments.force);
+  OutputFolder output(arguments.output, arguments.force, {}, MarkOf(ResultKind::kPage));
   const auto plain = [](const std::string& path) { return fs::absolute(path).lexically_normal(); };
   const fs::path back = plain(arguments.folder).lexically_relative(plain(arguments.output));
   WriteReport(arguments.folder, {output.work().string(), back.string() + "/"});

@@ -7,6 +7,7 @@
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
 #include "eval/cli/slam_settings.h"
+#include "eval/files/one_result.h"
 #include "eval/files/shell_word.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -71,6 +72,7 @@ void Slam(const SlamArguments& arguments) {
   }
   SlamSettings settings;
   config.Read(settings);
+  RequireOneResult(arguments.sequence, {kMarkOfRender});
   const Trajectory truth = TrueFrames(arguments.sequence);
   OutputFolder folder = OpenOutput(arguments.common, ResultKind::kSlam, {arguments.sequence});
   const SlamOutput slam = DisturbTrajectory(truth, settings.slam, arguments.seed);

@@ -8,6 +8,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/slam_settings.h"
 #include "eval/doubts/trajectory_doubts.h"
+#include "eval/files/one_result.h"
 #include "eval/metrics/association.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
@@ -114,6 +115,7 @@ void FitSlam(const SlamFitArguments& arguments) {
   if (files.size() % 2 != 0) {
     throw InputError(files.back(), "has no partner: files come in pairs, truth and estimate");
   }
+  for (const std::string& file : files) RequireOneResultAround(file);
   std::vector<SlamRun> runs;
   for (std::size_t i = 0; i < files.size(); i += 2) runs.push_back(ReadRun(files[i], files[i + 1]));
   const std::string place = files.size() == 2 ? files[1]

@@ -181,11 +181,13 @@ void RequireReachable(const std::string& path) {
   }
 }
 
-OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superseded)
+OutputFolder::OutputFolder(const std::string& path, bool force, FileRule superseded,
+                           std::string what)
     : target_(Resolved(path)),
       work_(WorkOf(target_)),
       force_(force),
-      superseded_(std::move(superseded)) {
+      superseded_(std::move(superseded)),
+      what_(std::move(what)) {
   RequireNotCurrent(path);
   RequireUsable(target_, work_, path, force);
   RequireFolderOrNothing(work_);
@@ -295,10 +297,10 @@ void OutputFolder::PutInPlace() {
   // in which the program may be ended.
   SyncFilesToDisk(work_);
   const EndDelay whole;
-  MarkAsReplaced(target_.string());
+  MarkAsReplaced(target_.string(), what_);
   RemoveSuperseded();
   MoveInto(work_, target_);
-  UnmarkAsReplaced(target_.string());
+  UnmarkAsReplaced(target_.string(), what_);
   committed_ = true;
 }
 

@@ -26,8 +26,10 @@ class OutputFolder {
   // Throws InputError for what RequireReachable() rejects, and when `path` is a file, a folder that
   // is not empty (unless `force`), the current folder or a parent of it, or a folder that another
   // program is writing. `superseded`: files of an earlier result; those that are not written again
-  // are removed, so that results are not mixed.
-  OutputFolder(const std::string& path, bool force, FileRule superseded = {});
+  // are removed, so that results are not mixed. `what`: the result, as marks name it
+  // (eval/files/one_result.h).
+  OutputFolder(const std::string& path, bool force, FileRule superseded = {},
+               std::string what = "result");
   // Removes all written files unless Commit() was called.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
@@ -59,6 +61,7 @@ class OutputFolder {
   bool committed_ = false;
   bool kept_ = false;  // files that could not be committed are not removed
   FileRule superseded_;
+  std::string what_;
   std::optional<EndTask> clean_;
 };
 

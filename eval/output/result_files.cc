@@ -7,6 +7,7 @@
 #include <set>
 
 #include "eval/experiment/study.h"
+#include "eval/files/one_result.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/tum_folder.h"
@@ -183,6 +184,27 @@ void RequireNoOtherTruth(const fs::path& folder, ResultKind kind) {
 }
 
 }  // namespace
+
+const char* MarkOf(ResultKind kind) {
+  switch (kind) {
+    case ResultKind::kRun:
+    case ResultKind::kMap:
+      return "run";
+    case ResultKind::kStudy:
+      return kMarkOfStudy;
+    case ResultKind::kAblation:
+      return "ablation";
+    case ResultKind::kSweep:
+      return "sweep";
+    case ResultKind::kRender:
+      return kMarkOfRender;
+    case ResultKind::kSlam:
+      return kMarkOfSlam;
+    case ResultKind::kPage:
+      break;
+  }
+  return "page";
+}
 
 FileRule FilesOf(ResultKind kind) {
   switch (kind) {

@@ -15,6 +15,10 @@ enum class ResultKind { kRun, kMap, kStudy, kAblation, kSweep, kRender, kSlam, k
 // Selects files of a folder by their paths relative to it.
 using FileRule = std::function<bool(const std::filesystem::path& relative)>;
 
+// What a mark says is replaced (eval/files/one_result.h). A map takes a run's place, and a run a
+// map's.
+const char* MarkOf(ResultKind kind);
+
 // The files that a result of this kind may have, without those of `regrid`. Sweeps handle their own
 // files (eval/sweep).
 FileRule FilesOf(ResultKind kind);

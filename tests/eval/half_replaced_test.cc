@@ -1,10 +1,12 @@
-// A folder in which a result is replaced, and a map whose save was killed.
+// A folder in which a command, killed or failed, has replaced a part of a result, and a map whose
+// save was killed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <thread>
 
+#include "eval/files/one_result.h"
 #include "eval/output/output_folder.h"
 #include "mapper/io/end_task.h"
 #include "tests/eval/program.h"
@@ -21,9 +23,43 @@ class HalfReplaced : public ProgramTest {
  protected:
   void SetUp() override {
     ProgramTest::SetUp();
+    Write("one.log", "FLASER 3 2 2 2 1.5 -2 0.25 1.5 -2 0.25 10.5 host 10.5\n");
     Succeed("render ./small.yaml --no-colour -o seq");
+    Succeed("slam seq -o poses");
   }
 };
+
+TEST_F(HalfReplaced, NoCommandTakesItForASequence) {
+  const std::vector<std::string> says = {"seq: holds files of two results", "killed or failed",
+                                         "seq/.depthgrid-replacing"};
+  const std::string map = "map seq --poses poses/slam.txt --loops poses/loops.csv --up z -o out";
+  MarkAsReplaced(Path("seq"), kMarkOfRender);
+  ExpectRefusal("map seq --up z -o out", says);
+  ExpectRefusal(map, says);
+  ExpectRefusal("slam seq -o out", says);
+  ExpectRefusal("slam-fit seq/groundtruth.txt poses/slam.txt", says);
+  ExpectRefusal("eval trajectory seq/groundtruth.txt poses/slam.txt", says);
+  ExpectRefusal("eval map seq/truth_map.yaml seq/truth_map.yaml", says);
+  Succeed("render ./small.yaml --no-colour -o seq --force");
+  Succeed("eval map seq/truth_map.yaml seq/truth_map.yaml");
+  MarkAsReplaced(Path("poses"), kMarkOfSlam);
+  ExpectRefusal(map, {"poses: holds files of two results"});
+  Succeed("slam seq -o poses --force");
+  Succeed(map);
+}
+
+// A map may lie beside the images that it is made of.
+TEST_F(HalfReplaced, AMarkIsOfOneOfTheResultsThere) {
+  MarkAsReplaced(Path("seq"), kMarkOfRender);
+  Succeed("map one.log -o seq --force");  // replaces no image
+  ExpectRefusal("map seq --up z -o out", {"seq: holds files of two results"});
+  Succeed("render ./small.yaml --no-colour -o seq --force");
+  MarkAsReplaced(Path("seq"), "run");
+  ExpectRefusal("report seq", {"seq: holds files of two results"});
+  Succeed("map seq --up z -o seq --force");  // the images are of one render
+  Succeed("report seq");
+  EXPECT_FALSE(fs::exists(Path("seq/.depthgrid-replacing")));
+}
 
 // A map that a robot saved itself, killed before the last step of it: its matched scans are in
 // matched.next.bin, beside those of the map before.
@@ -54,7 +90,7 @@ class ReplacingFolder : public TemporaryFolderTest {};
 TEST_F(ReplacingFolder, IsEndedWhileFilesAreStored) {
   Write("out/a.txt", "old");
   const auto end_amid = [&] {
-    OutputFolder folder(Path("out"), true);
+    OutputFolder folder(Path("out"), true, {}, kMarkOfRender);
     constexpr int kFiles = 1000;
     for (int i = 0; i < kFiles; ++i) WriteFile(folder.File(std::to_string(i)), "new");
     std::thread([&folder] { folder.Commit(); }).detach();

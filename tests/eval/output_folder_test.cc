@@ -126,14 +126,14 @@ TEST_F(OutputFolderTest, WhatWasReplacedInPartIsNoResult) {
 
 TEST_F(OutputFolderTest, AMarkOfAStudyIsOneOfItsCases) {
   fs::create_directories(Path("study/case/frames"));
-  MarkAsReplaced(Path("study"));
+  MarkAsReplaced(Path("study"), kMarkOfStudy);
   for (const char* of_study : {"study", "study/", "study/case", "study/case/"}) {
     EXPECT_THAT(RefusalOf([&] { RequireOneResult(Path(of_study)); }),
                 testing::HasSubstr("files of two results"))
         << of_study;
   }
   RequireOneResult(Path("study/case/frames"));
-  UnmarkAsReplaced(Path("study"));
+  UnmarkAsReplaced(Path("study"), kMarkOfStudy);
   RequireOneResult(Path("study/case"));
 }
 
