@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 #include <sstream>
 
@@ -49,6 +48,14 @@ void UnmarkAsReplaced(const std::string& folder, const std::string& what) {
   std::set<std::string> marks = MarksIn(folder);
   if (marks.erase(what) > 0) WriteMarks(folder, marks);
 }
+
+bool IsMarkedAsReplaced(const std::string& folder, const std::string& what) {
+  return MarksIn(folder).contains(what);
+}
+
+void RemoveMarks(const std::string& folder) { fs::remove(MarkIn(folder)); }
+
+bool IsMark(const fs::path& file) { return file.filename() == kMarkName; }
 
 void RequireOneResult(const std::string& folder, const std::vector<std::string>& of) {
   const std::set<std::string> marks = MarksIn(folder);

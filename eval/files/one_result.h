@@ -1,7 +1,8 @@
-// Marks a folder while a command replaces the result in it: if it is killed meanwhile, the folder
-// has files of both results.
+// Marks a folder while a command replaces the result in it: if the command does not come to the
+// end, the folder has files of both results.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,11 @@ inline constexpr const char* kMarkOfStudy = "study";
 void MarkAsReplaced(const std::string& folder, const std::string& what);
 // Leaves a mark of another result.
 void UnmarkAsReplaced(const std::string& folder, const std::string& what);
+bool IsMarkedAsReplaced(const std::string& folder, const std::string& what);
+// For a folder without any result, whose marks say nothing.
+void RemoveMarks(const std::string& folder);
+// Whether a file is one with marks.
+bool IsMark(const std::filesystem::path& file);
 
 // Throws InputError when the folder is marked, or is that of a case of a marked study. `of`: marks
 // of these results alone; empty: any.

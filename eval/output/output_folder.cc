@@ -54,10 +54,13 @@ fs::path WorkOf(const fs::path& target) {
   return (inside ? target : around) / name;
 }
 
-// Ignores the work folder of a killed program.
+// Ignores the work folder and the mark of a killed program, which are hidden: a user who has
+// removed all files that are listed sees an empty folder.
 bool IsEmpty(const fs::path& target, const fs::path& work) {
   return std::all_of(fs::directory_iterator(target), fs::directory_iterator(),
-                     [&](const fs::directory_entry& entry) { return entry.path() == work; });
+                     [&](const fs::directory_entry& entry) {
+                       return entry.path() == work || IsMark(entry.path());
+                     });
 }
 
 void RequireUsable(const fs::path& target, const fs::path& work, const std::string& shown,
@@ -104,13 +107,14 @@ void RequireSameKinds(const fs::path& from, const fs::path& to) {
   }
 }
 
-void MoveInto(const fs::path& from, const fs::path& to) {
+void MoveInto(const fs::path& from, const fs::path& to, bool& any_replaced) {
   for (const auto& entry : fs::directory_iterator(from)) {
     const fs::path destination = to / entry.path().filename();
     if (entry.is_directory() && fs::is_directory(fs::symlink_status(destination))) {
-      MoveInto(entry.path(), destination);
+      MoveInto(entry.path(), destination, any_replaced);
     } else {
       fs::rename(entry.path(), destination);
+      any_replaced = true;
     }
   }
 }
@@ -251,7 +255,7 @@ void OutputFolder::Clean() const {
   }
 }
 
-void OutputFolder::RemoveSuperseded() const {
+void OutputFolder::RemoveSuperseded(bool& any_replaced) const {
   if (!superseded_) return;
   std::vector<fs::path> superseded;
   const auto options = fs::directory_options::skip_permission_denied;
@@ -266,6 +270,7 @@ void OutputFolder::RemoveSuperseded() const {
   }
   for (const fs::path& file : superseded) {
     fs::remove(file);
+    any_replaced = true;
     std::error_code not_empty;  // parent folders are removed once they are empty
     fs::path parent = file.parent_path();
     while (parent != target_ && fs::remove(parent, not_empty)) parent = parent.parent_path();
@@ -283,6 +288,23 @@ bool OutputFolder::TakeName() const {
   return !error;
 }
 
+// A mark that an earlier command left stays until one of its kind comes to the end.
+void OutputFolder::ReplaceFiles() const {
+  const std::string target = target_.string();
+  if (IsEmpty(target_, work_)) RemoveMarks(target);
+  const bool is_new_mark = !IsMarkedAsReplaced(target, what_);
+  bool any_replaced = false;
+  MarkAsReplaced(target, what_);
+  try {
+    RemoveSuperseded(any_replaced);
+    MoveInto(work_, target_, any_replaced);
+  } catch (...) {
+    if (is_new_mark && !any_replaced) UnmarkAsReplaced(target, what_);
+    throw;
+  }
+  UnmarkAsReplaced(target, what_);
+}
+
 void OutputFolder::PutInPlace() {
   {
     const EndDelay whole;
@@ -297,10 +319,7 @@ void OutputFolder::PutInPlace() {
   // in which the program may be ended.
   SyncFilesToDisk(work_);
   const EndDelay whole;
-  MarkAsReplaced(target_.string(), what_);
-  RemoveSuperseded();
-  MoveInto(work_, target_);
-  UnmarkAsReplaced(target_.string(), what_);
+  ReplaceFiles();
   committed_ = true;
 }
 

@@ -41,9 +41,10 @@ class OutputFolder {
 
   // Moves the written files into place. In a folder that already has files (only with `force`, even
   // if they appeared meanwhile), files of the same name are replaced, superseded ones are removed
-  // and all others remain: a user's own files are never deleted. A program that is killed while it
-  // replaces files leaves a folder that RequireOneResult() rejects. Throws std::runtime_error on
-  // failure; files not yet in place then remain where they are, and the message says where.
+  // and all others remain: a user's own files are never deleted. A program that is killed, or
+  // fails, when it has replaced some leaves a folder that RequireOneResult() rejects. Throws
+  // std::runtime_error on failure; files not yet in place then remain where they are, and the
+  // message says where.
   void Commit();
 
  private:
@@ -51,7 +52,8 @@ class OutputFolder {
   void Clean() const;
   bool TakeName() const;
   void PutInPlace();
-  void RemoveSuperseded() const;
+  void ReplaceFiles() const;
+  void RemoveSuperseded(bool& any_replaced) const;
 
   std::filesystem::path target_;
   std::filesystem::path work_;

@@ -11,6 +11,7 @@
 #include "mapper/io/end_task.h"
 #include "tests/eval/program.h"
 #include "tests/io/temporary_folder.h"
+#include "tests/refusal.h"
 
 namespace depthgrid {
 namespace {
@@ -61,6 +62,14 @@ TEST_F(HalfReplaced, AMarkIsOfOneOfTheResultsThere) {
   EXPECT_FALSE(fs::exists(Path("seq/.depthgrid-replacing")));
 }
 
+TEST_F(HalfReplaced, AnEmptyFolderWithAMarkIsEmpty) {
+  fs::create_directory(Path("cleared"));
+  MarkAsReplaced(Path("cleared"), kMarkOfRender);
+  Succeed("map one.log -o cleared");
+  Succeed("report cleared");
+  EXPECT_THAT(FilesIn("cleared"), Not(Contains(".depthgrid-replacing")));
+}
+
 // A map that a robot saved itself, killed before the last step of it: its matched scans are in
 // matched.next.bin, beside those of the map before.
 TEST_F(HalfReplaced, AMapOfAKilledSaveIsHandedOnWhole) {
@@ -83,7 +92,45 @@ TEST_F(HalfReplaced, AMapOfAKilledSaveIsHandedOnWhole) {
   EXPECT_THAT(FilesIn("m"), Not(Contains("matched.next.bin")));
 }
 
-class ReplacingFolder : public TemporaryFolderTest {};
+class ReplacingFolder : public TemporaryFolderTest {
+ protected:
+  // Replaces out/a.txt; `meanwhile` happens before anything is replaced.
+  void FailReplacing(const std::function<void()>& meanwhile) const {
+    bool is_done = false;
+    const auto is_old = [&](const fs::path& relative) {
+      if (!std::exchange(is_done, true)) meanwhile();
+      return relative == "old.txt";
+    };
+    OutputFolder folder(Path("out"), true, is_old, kMarkOfRender);
+    WriteFile(folder.File("a.txt"), "new");
+    EXPECT_THROW(folder.Commit(), std::runtime_error);
+  }
+  bool IsOneResult() const {
+    return RefusalOf([&] { RequireOneResult(Path("out")); }) == "no error";
+  }
+};
+
+TEST_F(ReplacingFolder, AFailureIsMarkedWhereSomethingWasReplaced) {
+  const auto a_folder_comes = [&] {
+    fs::remove(Path("out/a.txt"));
+    fs::create_directories(Path("out/a.txt/mine"));
+  };
+  Write("out/a.txt", "old");
+  FailReplacing(a_folder_comes);
+  EXPECT_TRUE(IsOneResult());
+  // An earlier mark stays.
+  MarkAsReplaced(Path("out"), kMarkOfRender);
+  fs::remove_all(Path("out/a.txt"));
+  Write("out/a.txt", "old");
+  FailReplacing(a_folder_comes);
+  EXPECT_FALSE(IsOneResult());
+  UnmarkAsReplaced(Path("out"), kMarkOfRender);
+  fs::remove_all(Path("out/a.txt"));
+  Write("out/a.txt", "old");
+  Write("out/old.txt", "is removed first");
+  FailReplacing(a_folder_comes);
+  EXPECT_FALSE(IsOneResult());
+}
 
 // Storing many files takes longer than a user waits. That they are removed is not timed: a busy
 // disk takes long for this, too.
