@@ -1,6 +1,5 @@
 #include "mapper/match/bicubic.h"
 
-#include <array>
 #include <cmath>
 
 namespace depthgrid {
@@ -60,12 +59,19 @@ BicubicSample SampleBicubic(const ProbabilityView& view, const Eigen::Vector2d& 
   return sample;
 }
 
+SplineAlongAxis SplineAt(double coordinate_m, double resolution_m) {
+  const double u = coordinate_m / resolution_m - 0.5;  // values are at cell centres
+  const double u0 = std::floor(u);
+  return {static_cast<int>(u0) - 1, CatmullRom(u - u0).value};
+}
+
 double BicubicValue(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
-  const auto [first, wx, wy] = NeighboursOf(view, point_in_map);
+  const SplineAlongAxis x = SplineAt(point_in_map.x(), view.geometry.resolution_m);
+  const SplineAlongAxis y = SplineAt(point_in_map.y(), view.geometry.resolution_m);
   double value = 0.0;
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
-      value += wx.value[i] * wy.value[j] * view.At({first.x + i, first.y + j});
+      value += x.weights[i] * y.weights[j] * view.At({x.first_cell + i, y.first_cell + j});
     }
   }
   return value;

@@ -2,6 +2,8 @@
 // the cell centres, the same function as Ceres' BiCubicInterpolator, with second derivatives.
 #pragma once
 
+#include <array>
+
 #include "mapper/match/probability_view.h"
 
 namespace depthgrid {
@@ -21,5 +23,13 @@ struct BicubicSample {
 BicubicSample SampleBicubic(const ProbabilityView& view, const Eigen::Vector2d& point_in_map);
 // The value alone, in a third of the time.
 double BicubicValue(const ProbabilityView& view, const Eigen::Vector2d& point_in_map);
+
+// The share of one axis in the value, which is the sum over 4 x 4 cells of the products of their
+// two weights and their probability.
+struct SplineAlongAxis {
+  int first_cell = 0;
+  std::array<double, 4> weights{};  // of this cell and the next three
+};
+SplineAlongAxis SplineAt(double coordinate_m, double resolution_m);
 
 }  // namespace depthgrid

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -9,7 +10,9 @@
 #include "eval/report/match_surface.h"
 #include "eval/report/worst_frames_impl.h"
 #include "mapper/core/level.h"
+#include "mapper/core/rng.h"
 #include "mapper/io/file.h"
+#include "mapper/match/bicubic.h"
 #include "tests/scratch.h"
 
 namespace depthgrid {
@@ -67,6 +70,34 @@ TEST(MatchSurface, IsFlatAlongASingleWall) {
     EXPECT_NEAR(surface.residual[20 * 41 + static_cast<std::size_t>(x)], 0.1, 1e-3);
     EXPECT_GT(surface.residual[static_cast<std::size_t>(x)], 0.5);  // 20 cm beside the wall
   }
+}
+
+// Random cells, beyond whose edge some of the points lie.
+TEST(MatchSurface, IsTheCostAtEachOffset) {
+  RandomStream random(31, RandomStage::kTest);
+  OccupancyMap map({0.05, {-30, -29}, 60, 57});
+  for (float& prob : map.occupied_prob) prob = static_cast<float>(random.Uniform(0.0, 1.0));
+  const MatchPoints points = PointsOf(true);
+  const Pose2 pose = {-1.02, -1.31, 0.013};
+  const MatchSurface surface = MatchSurfaceAround(points, ViewOf(map), pose, {});
+  ASSERT_EQ(surface.residual.size(), 41U * 41U);
+  for (int y = -20; y <= 20; ++y) {
+    for (int x = -20; x <= 20; ++x) {
+      const Pose2 moved = {pose.x_m + 0.01 * x, pose.y_m + 0.01 * y, pose.yaw_rad};
+      double sum = 0.0;
+      for (std::size_t i = 0; i < points.x_m.size(); ++i) {
+        const double value =
+            BicubicValue(ViewOf(map), moved * Eigen::Vector2d(points.x_m[i], points.y_m[i]));
+        sum += (1.0 - value) * (1.0 - value);
+      }
+      EXPECT_NEAR(surface.residual[static_cast<std::size_t>((y + 20) * 41 + x + 20)],
+                  std::sqrt(sum / static_cast<double>(points.x_m.size())), 1e-9);
+    }
+  }
+  // The middle of the rotations is the middle of the offsets.
+  EXPECT_NEAR(surface.yaw_residual[20], surface.residual[20 * 41 + 20], 1e-9);
+  const auto [least, most] = std::minmax_element(surface.residual.begin(), surface.residual.end());
+  EXPECT_GT(*most - *least, 0.02);
 }
 
 TEST(WorstRows, AreTheLargestApartFromEachOther) {
