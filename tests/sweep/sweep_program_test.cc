@@ -62,17 +62,28 @@ class ProgramSweep : public ProgramTest {
       if (quiet) ::execv(kProgramFile, argv.data());
       ::_exit(1);
     }
-    const auto done = [&]() -> std::size_t {
-      if (!std::filesystem::exists(Path(folder + "/results.sqlite"))) return 0;
-      return SweepDatabase::Open(Path(folder)).FinishedRuns().size();
+    const auto open = [&]() -> std::optional<SweepDatabase> {
+      if (!SweepDatabase::Exists(Path(folder))) return std::nullopt;
+      return SweepDatabase::Open(Path(folder));
+    };
+    const auto done = [](const std::optional<SweepDatabase>& database) {
+      return database ? database->FinishedRuns().size() : 0;
     };
     int status = 0;
-    while (done() < rows && ::waitpid(child, &status, WNOHANG) == 0) ::usleep(1000);
+    {
+      // Opened once, because that takes longer than asking; and closed before the kill, so that the
+      // killed program leaves the database as if nobody else had it open.
+      std::optional<SweepDatabase> database = open();
+      while (done(database) < rows && ::waitpid(child, &status, WNOHANG) == 0) {
+        ::usleep(1000);
+        if (!database) database = open();
+      }
+    }
     std::this_thread::sleep_for(longer);
     ::kill(child, SIGKILL);
     ::waitpid(child, &status, 0);
     if (!WIFSIGNALED(status)) return std::nullopt;
-    return done();
+    return done(open());
   }
 
   static constexpr const char* kSweep = R"(
