@@ -35,6 +35,15 @@ expect yes '^apt-get install .*--no-install-recommends clang-format cppcheck$'
 calls build
 expect yes '^apt-get install .* libceres-dev '
 expect no '^apt-get install .*(chromium|clang|slurm)'
+# Known: one that is there, one that was, and half of one.
+printf '#!/bin/sh\nprintf "%%s\\n" "ninja-build install ok installed" "libceres-dev deinstall ok config-files" ' \
+  >"$scratch/bin/dpkg-query"
+printf '"cmake install ok half-installed" "build-essential hold ok installed"\nexit 1\n' >>"$scratch/bin/dpkg-query"
+calls build
+expect yes '^apt-get install .* libceres-dev '
+expect yes '^apt-get install .* cmake '
+expect no '^apt-get install .*(ninja-build|build-essential)'
+printf '#!/bin/sh\nexit 1\n' >"$scratch/bin/dpkg-query"
 calls test
 expect yes '^apt-get install .* libceres-dev .* chromium .* python3-numpy python3-zstandard$'
 expect yes '^cmake --preset release .*-DDEPTHGRID_WERROR=ON$'
