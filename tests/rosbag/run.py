@@ -3,9 +3,12 @@
 
 Exit code 77 (skipped) where ROS's Python packages are not installed.
 """
+import contextlib
 import filecmp
+import io
 import math
 import os
+import runpy
 import shutil
 import subprocess
 import sys
@@ -56,18 +59,17 @@ def times(a, b):
     return a[0] + c * b[0] - s * b[1], a[1] + s * b[0] + c * b[1], a[2] + b[2]
 
 
-def distance(x, y, angle):
-    """To the nearest wall."""
-    nearest, ray = math.inf, (math.cos(angle), math.sin(angle))
+def distances(x, y, angles):
+    """To the nearest wall, at each of the angles."""
+    nearest, ray = np.full(len(angles), np.inf), (np.cos(angles), np.sin(angles))
     for (ax, ay), (bx, by) in zip(CORNERS, CORNERS[1:]):
         wall = (bx - ax, by - ay)
         cross = ray[0] * wall[1] - ray[1] * wall[0]
-        if abs(cross) < 1e-12:
-            continue
+        cross[abs(cross) < 1e-12] = np.nan
         along = ((ax - x) * wall[1] - (ay - y) * wall[0]) / cross
         share = ((ax - x) * ray[1] - (ay - y) * ray[0]) / cross
-        if along > 0 and 0 <= share <= 1:
-            nearest = min(nearest, along)
+        hit = (along > 0) & (0 <= share) & (share <= 1)
+        nearest[hit] = np.minimum(nearest, along)[hit]
     return nearest
 
 
@@ -100,10 +102,10 @@ def laser_scan(seconds, upside_down):
     message = LaserScan()
     message.header.stamp, message.header.frame_id = stamp(seconds), "laser"
     message.angle_min, message.angle_increment, message.range_min, message.range_max = -2.0, 0.01, 0.1, 7.0
-    angles = [message.angle_min + message.angle_increment * i for i in range(401)]
+    angles = message.angle_min + message.angle_increment * np.arange(401)
     message.angle_max = angles[-1]
-    ranges = [distance(x, y, yaw + (-a if upside_down else a)) for a in angles]
-    message.ranges = [r if r < 7.0 else math.inf for r in ranges]
+    ranges = distances(x, y, yaw - angles if upside_down else yaw + angles)
+    message.ranges = np.where(ranges < 7.0, ranges, np.inf).tolist()
     message.ranges[7] = math.nan
     return message
 
@@ -142,7 +144,7 @@ def write_depth_bag(path):
             seconds = frame * STEP_S
             bag.write("/odom", odometry(seconds), stamp(seconds))
             x, y, yaw = times(truth(seconds), (0.2, 0.0, 0.0))
-            walls = np.array([distance(x, y, yaw - math.atan(a)) * math.cos(math.atan(a)) for a in u])
+            walls = distances(x, y, yaw - np.arctan(u)) * np.cos(np.arctan(u))
             with np.errstate(divide="ignore"):
                 floor = np.where(down > 0, CAMERA_Z / down, np.inf)
             depth = np.minimum(walls[None, :], floor[:, None])
@@ -162,7 +164,25 @@ def run(*command, exit_code=0):
 
 
 def from_bag(*arguments, exit_code=0):
+    """As a user calls it."""
     return run(sys.executable, FROM_BAG, *arguments, exit_code=exit_code)
+
+
+def from_bag_here(*arguments, exit_code=0):
+    """The same in this process, which has loaded ROS's library already: that takes most of the time of a call."""
+    out, err, code, argv = io.StringIO(), io.StringIO(), None, sys.argv
+    sys.argv = [FROM_BAG, *arguments]
+    try:
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            runpy.run_path(FROM_BAG, run_name="__main__")
+    except SystemExit as end:
+        code = end.code
+    finally:
+        sys.argv = argv
+    done = subprocess.CompletedProcess(arguments, code, out.getvalue(), err.getvalue())
+    if code != exit_code:
+        sys.exit(f"{FROM_BAG} {' '.join(arguments)}: exit code {code}\n{done.stdout}{done.stderr}")
+    return done
 
 
 def require(condition, what):
@@ -184,7 +204,7 @@ def mean_error_m(name, mount, is_camera):
 
 
 def require_refusal(text, *arguments):
-    done = from_bag(*arguments, exit_code=2)
+    done = from_bag_here(*arguments, exit_code=2)
     require(text in done.stderr and done.stderr.count("\n") == 1 and not done.stdout, f"{text}: {done.stderr}")
     require("refused" not in os.listdir(FOLDER), f"{arguments} leave nothing")
 
@@ -198,11 +218,11 @@ def require_same_of_ros2():
     ros2_writer.write_sqlite(camera, f"{FOLDER}/camera_sqlite")
     ros2_writer.write_mcap(camera, f"{FOLDER}/camera.mcap", zstandard.ZstdCompressor().compress)
     for bag in ["laser_sqlite", "laser.mcap"]:
-        require(from_bag(bag).stdout == from_bag("plain.bag").stdout, f"{bag} has the topics of plain.bag")
-        from_bag(bag, "--scan", "/scan", "--odom", "/odom", "-o", f"{bag}.log")
+        require(from_bag_here(bag).stdout == from_bag_here("plain.bag").stdout, f"{bag} has the topics of plain.bag")
+        from_bag_here(bag, "--scan", "/scan", "--odom", "/odom", "-o", f"{bag}.log")
         require(filecmp.cmp(f"{FOLDER}/{bag}.log", f"{FOLDER}/plain.log", False), f"the log of {bag} is that of plain.bag")
     for bag in ["camera_sqlite", "camera.mcap"]:
-        from_bag(bag, "--depth", "/camera/depth/image_raw", "--odom", "/odom", "-o", f"{bag}_sequence")
+        from_bag_here(bag, "--depth", "/camera/depth/image_raw", "--odom", "/odom", "-o", f"{bag}_sequence")
         names = ["camera.yaml", "depth.txt", "odometry.txt"]
         names += [f"depth/{name}" for name in os.listdir(f"{FOLDER}/sequence/depth")]
         same, *others = filecmp.cmpfiles(f"{FOLDER}/sequence", f"{FOLDER}/{bag}_sequence", names, False)
@@ -210,7 +230,7 @@ def require_same_of_ros2():
 
     with open(f"{FOLDER}/laser.mcap", "rb") as whole, open(f"{FOLDER}/cut.mcap", "wb") as cut:
         cut.write(whole.read()[:600000])
-    said = from_bag("cut.mcap", "--scan", "/scan", "--odom", "/odom", "-o", "cut.log")
+    said = from_bag_here("cut.mcap", "--scan", "/scan", "--odom", "/odom", "-o", "cut.log")
     require("cut.mcap: was not closed" in said.stderr, said.stderr)
     with open(f"{FOLDER}/cut.log", encoding="ascii") as cut, open(f"{FOLDER}/plain.log", encoding="ascii") as whole:
         begin, log = cut.read(), whole.read()
@@ -225,6 +245,8 @@ def require_same_of_ros2():
 def main():
     shutil.rmtree(FOLDER, ignore_errors=True)
     os.makedirs(FOLDER)
+    os.chdir(FOLDER)
+    sys.path.insert(0, os.path.dirname(FROM_BAG))  # as for a program that lies there
     for name, compression, upside_down, with_odometry in [
             ("plain", "none", False, True), ("turned_over", "lz4", True, True), ("tf_alone", "bz2", False, False)]:
         write_laser_bag(f"{FOLDER}/{name}.bag", compression, upside_down, with_odometry)
@@ -237,7 +259,7 @@ def main():
         error_m = mean_error_m(name, LASER, False)
         print(f"{name}: mean error {error_m:.4f} m")
         require(error_m < 0.03, f"{name}: {error_m} m, the odometry drifts by .3 m")
-    listed = from_bag("plain.bag").stdout
+    listed = from_bag_here("plain.bag").stdout
     require("/scan  sensor_msgs/LaserScan  240\n" in listed, listed)
 
     write_depth_bag(f"{FOLDER}/depth.bag")
@@ -260,6 +282,7 @@ def main():
     require_refusal("where 'laser' is on 'robot'", "plain.bag", "--scan", "/scan", "--odom", "/odom",
                     "--base-frame", "robot", "-o", "refused")
     require_same_of_ros2()
+    os.chdir("/")
     shutil.rmtree(FOLDER)
 
 
