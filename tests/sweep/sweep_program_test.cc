@@ -159,14 +159,14 @@ constexpr std::size_t kKills = 50;
 #endif
 
 TEST_F(ProgramSweep, KilledFiftyTimesItIsTheSameTable) {
-  constexpr std::size_t kRuns = 4 * kKills;
+  constexpr std::size_t kRuns = 3 * kKills;
   Write("many.yaml", fmt::format(R"(
 experiment: ./small.yaml
 axes:
-  mapper.fusion.gain: {{from: 0, to: 1, count: 20}}
+  mapper.fusion.gain: {{from: 0, to: 1, count: 10}}
   seed: {{seeds: {}}}
 )",
-                                 kRuns / 20));
+                                 kRuns / 10));
   Succeed("sweep ./many.yaml -j 2 -o whole");
   std::set<std::size_t> rows_left;
   for (std::size_t kill = 0; kill < kKills; ++kill) {
