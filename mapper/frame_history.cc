@@ -13,6 +13,8 @@
 namespace depthgrid {
 namespace {
 
+// A motion so many times as large as usual is far larger; chosen, not measured.
+constexpr double kFar = 3.0;
 // Longest gap over which the last motion is extrapolated.
 constexpr double kNearS = 0.5;
 // Longest gap that counts as one frame: 10 Hz, and what stamps are rounded by.
@@ -81,11 +83,14 @@ bool FrameHistory::WasLost() const {
 }
 
 bool FrameHistory::OutranUsualMotion() const {
-  constexpr double kFar = 3.0;  // chosen, not measured
   const FrameRecord* last = PosedBefore(newest());
   if (last == nullptr || !newest().slam_from_camera) return false;
   const auto frames = static_cast<double>(&newest() - last);
   return UsualMotionSoFar().FramesFor(MotionOf(*last, newest())) > kFar * frames;
+}
+
+double FrameHistory::LongestUsualWayM(const FrameRecord& since) const {
+  return kFar * static_cast<double>(&newest() - &since) * UsualMotionSoFar().WayPerFrameM();
 }
 
 int FrameHistory::FramesToNewest() const {

@@ -45,6 +45,8 @@ class FrameHistory {
   // Whether SLAM's newest motion is far larger than usual for the number of frames since the last
   // pose.
   bool OutranUsualMotion() const;
+  // The longest way since an earlier frame that is not far longer than usual.
+  double LongestUsualWayM(const FrameRecord& since) const;
   // Frames that the newest motion counts as: more than one after a pause in which SLAM moved
   // (MovingStepsIn); 1 after a loss or in a new epoch.
   int FramesToNewest() const;

@@ -124,7 +124,8 @@ std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<co
   const StageTimer timer(clocks, report.times.match_us);
   const FrameRecord& last = *history.Find(slips.last_frame());
   const Pose2 map_from_last = filter.map_from_slam() * BaseOf(*last.slam_from_camera);
-  return slips.Find(scan, prediction, map_from_last, mapped.size(), *reference);
+  return slips.Find(scan, prediction, {map_from_last, history.LongestUsualWayM(last)},
+                    mapped.size(), *reference);
 }
 
 // Searches for a slip and, if there was one, begins an epoch at the corrected heading.

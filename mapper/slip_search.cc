@@ -39,6 +39,9 @@ constexpr int kDrawnLatelyFrames = 30;
 // the pose by some centimetres (docs/tried.md, "Slips").
 constexpr double kTurnedShare = 0.5;
 constexpr double kInPlaceM = 0.015;
+// The estimate of the last pose and that of this one may differ by so much more than the camera
+// went.
+constexpr double kEstimateErrorM = 0.02;
 // Smaller slips are corrected by the match itself.
 constexpr double kLeastSlipM = 0.05;
 constexpr double kLeastSlipRad = RadFromDeg(2.0);
@@ -103,7 +106,7 @@ bool SlipSearch::IsSuspected(const FrameRecord& frame, double share,
 }
 
 std::optional<MatchResult> SlipSearch::BestHeading(const std::shared_ptr<const Scan>& scan,
-                                                   const Prediction& prediction,
+                                                   const Prediction& prediction, const Last& last,
                                                    ReferenceMap& reference) const {
   const Eigen::Matrix3d covariance = prediction.covariance + Squared(kHeadingSigma);
   const int most = static_cast<int>(slip_deg_ / kHeadingStepDeg);
@@ -118,6 +121,9 @@ std::optional<MatchResult> SlipSearch::BestHeading(const std::shared_ptr<const S
     if (!KnowsHeading(match, covariance)) continue;
     const Pose2 slip = Between(prediction.map_from_base, match.map_from_base);
     if (!IsSlip(slip, prediction.covariance)) continue;
+    // In a slip SLAM moves as the camera does not. What the camera cannot have reached looks alike.
+    const double way_m = Between(last.map_from_base, match.map_from_base).translation().norm();
+    if (way_m > last.longest_way_m + kEstimateErrorM) continue;
     least_share = match.score;
     best = match;
   }
@@ -125,16 +131,16 @@ std::optional<MatchResult> SlipSearch::BestHeading(const std::shared_ptr<const S
 }
 
 std::optional<Pose2> SlipSearch::Find(const std::shared_ptr<const Scan>& scan,
-                                      const Prediction& prediction, const Pose2& map_from_last,
+                                      const Prediction& prediction, const Last& at_last,
                                       int mapped_frames, ReferenceMap& reference) const {
-  const std::optional<MatchResult> best = BestHeading(scan, prediction, reference);
+  const std::optional<MatchResult> best = BestHeading(scan, prediction, at_last, reference);
   if (!best) return {};
   const Pose2 found = best->map_from_base;
   const int before = std::max(0, mapped_frames - kDrawnLatelyFrames);
-  const Pose2 last_from_found = Between(map_from_last, found);
+  const Pose2 last_from_found = Between(at_last.map_from_base, found);
   const auto last_lasting = SeenByBoth(*last_scan_, *scan, Inverse(last_from_found));
   const auto lasting = SeenByBoth(*scan, *last_scan_, last_from_found);
-  const double last = reference.ShareSeenBefore(last_lasting, map_from_last, before);
+  const double last = reference.ShareSeenBefore(last_lasting, at_last.map_from_base, before);
   const double there = reference.ShareSeenBefore(lasting, found, before);
   // Standard deviation of the share with so few surfels.
   const double scatter = std::sqrt(last * (1.0 - last) / best->explained);

@@ -25,12 +25,15 @@ class SlipSearch {
   // `usually` gives the usual share.
   bool IsSuspected(const FrameRecord& frame, double share, const Relocation& usually) const;
 
+  // Where the camera was at last_frame(), and how far it may have gone since.
+  struct Last {
+    Pose2 map_from_base;
+    double longest_way_m = 0.0;
+  };
   // A pose at another heading at which the map explains the scan about as well as the last one;
-  // empty if there is none. Requires IsSuspected(). `map_from_last`: pose of last_frame();
-  // `mapped_frames`: their number.
+  // empty if there is none. Requires IsSuspected(). `mapped_frames`: their number.
   std::optional<Pose2> Find(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
-                            const Pose2& map_from_last, int mapped_frames,
-                            ReferenceMap& reference) const;
+                            const Last& last, int mapped_frames, ReferenceMap& reference) const;
 
   // Records a frame's scan and its match at the final prediction.
   void Placed(const FrameRecord& frame, const std::shared_ptr<const Scan>& scan,
@@ -41,7 +44,7 @@ class SlipSearch {
  private:
   // The match at the heading that explains most; empty if none qualifies as a slip.
   std::optional<MatchResult> BestHeading(const std::shared_ptr<const Scan>& scan,
-                                         const Prediction& prediction,
+                                         const Prediction& prediction, const Last& last,
                                          ReferenceMap& reference) const;
 
   double slip_deg_;

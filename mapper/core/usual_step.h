@@ -32,6 +32,7 @@ class UsualMotion {
     turn_rad_ += std::abs(motion.yaw_rad);
     ++motions_;
   }
+  double WayPerFrameM() const { return motions_ > 0 ? way_m_ / motions_ : 0.0; }
   // The number of mean frames needed for a motion, by way or by turn, the larger; infinite if
   // nothing moved before.
   double FramesFor(const Pose2& motion) const {
