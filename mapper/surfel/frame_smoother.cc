@@ -74,10 +74,13 @@ class Equations {
     g_.segment<3>(bias) += weight.cwiseProduct(error);
   }
 
-  // bias = kept * previous bias + renewed; constant while SLAM stands.
-  void AddBias(int frame, const State& state, const MotionNoise& noise, bool stands) {
+  // bias = kept * previous bias + renewed, each over its standard deviation; constant while SLAM
+  // stands. `more`: the standard deviation over the previous one.
+  void AddBias(int frame, const State& state, const MotionNoise& noise, const SmootherFrame& here,
+               const Eigen::Vector3d& more) {
     const auto k = static_cast<std::size_t>(frame);
-    const Eigen::Vector3d sigma = noise.bias.cwiseMax(kLeastBias);
+    const bool stands = here.stands;
+    const Eigen::Vector3d sigma = noise.bias.cwiseProduct(here.growth).cwiseMax(kLeastBias);
     const int bias = kUnknowns * frame + 3;
     if (frame == 0) {
       const Eigen::Vector3d weight = Inverted(sigma);
@@ -86,8 +89,8 @@ class Equations {
       return;
     }
     const Eigen::Vector3d kept =
-        stands ? Eigen::Vector3d(Eigen::Vector3d::Ones()) : noise.bias_kept;
-    const Eigen::Vector3d renewed = (1.0 - kept.array().square()).sqrt().matrix();
+        stands ? Eigen::Vector3d(Eigen::Vector3d::Ones()) : noise.bias_kept.cwiseProduct(more);
+    const Eigen::Vector3d renewed = (1.0 - noise.bias_kept.array().square()).sqrt().matrix();
     const Eigen::Vector3d weight =
         Inverted(stands ? kLeastBias : Eigen::Vector3d(renewed.cwiseProduct(sigma)));
     const Eigen::Vector3d error = state.bias[k] - kept.cwiseProduct(state.bias[k - 1]);
@@ -158,7 +161,6 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
   State state;
   for (const SmootherFrame& frame : frames) state.map_from_base.push_back(frame.map_from_base);
   state.bias.assign(frames.size(), Eigen::Vector3d::Zero());
-  const Eigen::Vector3d motion_weight = Inverted(noise.walk.cwiseMax(kLeastWalk));
   const Eigen::Vector3d standing_weight = Inverted(kLeastWalk);
   const Eigen::Matrix3d jitter = Squared(noise.jitter);
   const Eigen::Vector3d stay_weight =
@@ -175,10 +177,13 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
                            WithAddedCovariance(InformationIn(pose, match), jitter));
       }
       equations.AddStay(frame, pose, frames[k].map_from_base, stay_weight);
-      equations.AddBias(frame, state, noise, frames[k].stands);
+      const Eigen::Vector3d& growth = frames[k].growth;
+      equations.AddBias(frame, state, noise, frames[k],
+                        growth.cwiseQuotient(frames[k > 0 ? k - 1 : 0].growth));
       if (k > 0 && frames[k].motion) {
+        const Eigen::Vector3d walk = noise.walk.cwiseProduct(growth).cwiseMax(kLeastWalk);
         equations.AddMotion(frame, state, *frames[k].motion, frames[k].stands,
-                            frames[k].stands ? standing_weight : motion_weight);
+                            frames[k].stands ? standing_weight : Inverted(walk));
       }
     }
     if (!equations.SolveInto(state)) break;

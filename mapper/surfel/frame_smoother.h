@@ -15,6 +15,8 @@ struct SmootherFrame {
   MatchResult match;            // against the adjusted map; if not found, only the motion is used
   std::optional<Pose2> motion;  // SLAM's, from the previous frame
   bool stands = false;          // SLAM's pose stood still
+  // SLAM's walk and bias here as a multiple of those elsewhere.
+  Eigen::Vector3d growth = Eigen::Vector3d::Ones();
 };
 
 // The noise of SLAM's motion, estimated from the matches.

@@ -116,6 +116,24 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
   return motions;
 }
 
+std::vector<Eigen::Vector3d> GrowthAt(const std::vector<GroupMotion>& motions,
+                                      const std::vector<Eigen::Vector3d>& motion_growth,
+                                      const SurfelGroups& of) {
+  std::vector<Eigen::Vector3d> growth(of.places().size(), Eigen::Vector3d::Ones());
+  if (motion_growth.empty()) return growth;
+  std::size_t next = 0;
+  for (std::size_t g = 1; g < motions.size(); ++g) {
+    if (!motions[g].known || motions[g].of_prior_map) continue;
+    const auto begin = static_cast<std::size_t>(of.groups()[g - 1].first_frame) + 1;
+    const auto first = static_cast<std::size_t>(of.groups()[g].first_frame);
+    // No motion leads on from the last group.
+    const std::size_t end = g + 1 < motions.size() ? first + 1 : growth.size();
+    const Eigen::Vector3d& here = motion_growth[next++];
+    for (std::size_t i = begin; i < end; ++i) growth[i] = here;
+  }
+  return growth;
+}
+
 std::vector<GroupStart> StartsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames) {
   std::vector<GroupStart> starts;
   bool in_place = false;  // no gap in SLAM's motion since a frame was tied

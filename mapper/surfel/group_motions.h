@@ -13,6 +13,12 @@ namespace depthgrid {
 // before a group's first is tied to an earlier group, also the tie to that group.
 std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames);
 
+// MotionGrowth() at each frame (JointResult::motion_growth, one for each of SLAM's motions between
+// the groups): that of the motion which contains it.
+std::vector<Eigen::Vector3d> GrowthAt(const std::vector<GroupMotion>& motions,
+                                      const std::vector<Eigen::Vector3d>& motion_growth,
+                                      const SurfelGroups& of);
+
 // How far the groups (not joined yet) may be joined.
 std::vector<GroupStart> StartsOf(const SurfelGroups& of, const std::vector<MappedFrame>& frames);
 

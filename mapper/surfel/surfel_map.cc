@@ -217,7 +217,8 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   adjustment.motion_spread = SpreadOf(groups.groups(), motions, frames, result);
   adjustment.map_from_base =
       effort == AdjustEffort::kFinish
-          ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread)
+          ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread,
+                         GrowthAt(motions, result.motion_growth, groups))
           : PosesOf(groups.places(), result.map_from_group);
   // More frames may follow: their matches are judged as before.
   if (effort == AdjustEffort::kFinish) matcher_.ShareErrors(shared_before);
@@ -270,7 +271,8 @@ JointOptions SurfelMap::JointOptionsFor(AdjustEffort effort) const {
 std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frames,
                                            const SurfelGroups& groups,
                                            const std::vector<Pose2>& map_from_group,
-                                           const std::optional<MotionSpread>& spread) {
+                                           const std::optional<MotionSpread>& spread,
+                                           const std::vector<Eigen::Vector3d>& growth) {
   SurfelStore map;
   for (std::size_t g = 0; g < groups.groups().size(); ++g) {
     InsertInto(map, groups.groups()[g].surfels, map_from_group[g], 0.0);
@@ -290,7 +292,12 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
     smoother.push_back({poses[i], match, frames[i].slam_motion, frames[i].stands});
   }
   MotionNoise noise = NoiseOf(smoother);
-  if (spread && spread->IsSure()) Bound(*spread, noise);
+  if (spread && spread->IsSure()) {
+    Bound(*spread, noise);
+    for (std::size_t k = 0; k < smoother.size(); ++k) {
+      smoother[k].growth = growth[static_cast<std::size_t>(first_new) + k];
+    }
+  }
   const std::vector<Pose2> smoothed = Smoothed(smoother, noise, options_.stay_m);
   std::copy(smoothed.begin(), smoothed.end(), poses.begin() + first_new);
   return poses;

@@ -81,7 +81,8 @@ class SurfelMap : public ReferenceMap {
   std::vector<Pose2> SmoothedOver(const std::vector<MappedFrame>& frames,
                                   const SurfelGroups& groups,
                                   const std::vector<Pose2>& map_from_group,
-                                  const std::optional<MotionSpread>& spread);
+                                  const std::optional<MotionSpread>& spread,
+                                  const std::vector<Eigen::Vector3d>& growth);
   const std::vector<Surfel>& PiecesOf(const std::shared_ptr<const Scan>& scan);
 
   SurfelOptions options_;

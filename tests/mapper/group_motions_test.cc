@@ -206,5 +206,32 @@ TEST(GroupMotions, OnlyFramesThatFollowEachOtherHaveAPauseBetweenThem) {
   }
 }
 
+// The frames of a motion are those after a group's first one up to the next group's. Of the last
+// group's others SLAM errs as it did before.
+TEST(GroupMotions, AFrameHasTheGrowthOfTheMotionThatContainsIt) {
+  Walks walks(1);
+  SurfelGroupOptions options;
+  options.length_m = 0.15;  // two frames
+  SurfelGroups pairs(options);
+  for (const MappedFrame& frame : walks.frames) pairs.Add({}, frame.map_from_base);
+  walks.frames[4].slam_motion.reset();  // the first frame of group 2
+  const std::vector<GroupMotion> motions = MotionsOf(pairs, walks.frames);
+  std::vector<Eigen::Vector3d> of_motions;
+  for (std::size_t g = 1; g < motions.size(); ++g) {
+    if (g != 2) of_motions.push_back(Eigen::Vector3d::Constant(10.0 * static_cast<double>(g)));
+  }
+  const std::vector<Eigen::Vector3d> growth = GrowthAt(motions, of_motions, pairs);
+  ASSERT_EQ(growth.size(), walks.frames.size());
+  const std::vector<SurfelGroup>& groups = pairs.groups();
+  for (std::size_t i = 0; i < growth.size(); ++i) {
+    std::size_t g = 0;
+    while (g + 1 < groups.size() && groups[g].first_frame < static_cast<int>(i)) ++g;
+    const double expected = g == 0 || g == 2 ? 1.0 : 10.0 * static_cast<double>(g);
+    EXPECT_EQ(growth[i].x(), expected) << i;
+  }
+  EXPECT_EQ(GrowthAt(motions, {}, pairs),
+            std::vector<Eigen::Vector3d>(growth.size(), Eigen::Vector3d::Ones().eval()));
+}
+
 }  // namespace
 }  // namespace depthgrid
