@@ -255,7 +255,13 @@ JointResult Adjust(const Problem& problem, const std::vector<GroupLink>& loops) 
     result.map_from_group.push_back(group.map_from_group);
   }
   const std::vector<GroupLink> unit = UnitMotionLinks(problem);
-  result.motion_sigma = MotionSigma(unit, result.map_from_group, FirstShares(problem, unit));
+  const std::vector<Eigen::Vector3d> shares = FirstShares(problem, unit);
+  result.motion_sigma = MotionSigma(unit, result.map_from_group, shares);
+  if (problem.options.judge_stretches) {
+    // Else the first round would move to SLAM's drift what the run had seen of it.
+    result.motion_growth = MotionGrowth(unit, MotionLinks(problem, result.motion_sigma),
+                                        result.map_from_group, shares, result.motion_sigma, {});
+  }
   if (!loops.empty()) CloseLoops(problem, loops, result.map_from_group);
   const std::vector<Pose2> before = result.map_from_group;
   bool settled = true;

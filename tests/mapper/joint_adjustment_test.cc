@@ -60,6 +60,20 @@ TEST(JointAdjustment, OneWrongMotionDoesNotMakeThePriorWorthless) {
   EXPECT_NEAR(result.motion_sigma.x(), 1.4826 * 0.0002, 1e-6);
 }
 
+// SLAM that errs by 20 mm a group in the last quarter. The poses of the run, which are right, tell
+// it before anything has moved.
+TEST(JointAdjustment, WhereSlamErredByMoreIsToldBeforeTheFirstRound) {
+  constexpr std::size_t kDrifts = 3 * kGroups / 4;
+  Corridor corridor = WalkWithAJump(0.001);
+  for (std::size_t g = kDrifts; g < kGroups; ++g) corridor.motions[g].before_from_group.x_m += 0.02;
+  JointOptions options;
+  options.rounds = 0;
+  const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {}, options);
+  ASSERT_EQ(result.motion_growth.size(), kGroups - 1);
+  EXPECT_EQ(result.motion_growth.front().x(), 1.0);
+  EXPECT_NEAR(result.motion_growth[kDrifts + 4].x(), 20.0, 2.0);
+}
+
 TEST(JointAdjustment, WhatOnlyThePriorHoldsStays) {
   const Corridor corridor = WalkWithAJump(0.001);
   const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {}, {});
