@@ -87,22 +87,22 @@ TEST(Smoothed, ABiasOutlastsAStand) {
 // SLAM that was perfect and then goes 2 mm a frame too far. Believed as before, it is followed by
 // more than a centimetre although each match knows the way to one.
 TEST(Smoothed, SlamIsBelievedLessWhereItsErrorsGrew) {
-  constexpr int kPerfect = 200;
+  constexpr int kUndisturbed = 200;
   MotionNoise noise;
   noise.walk.setConstant(1e-5);
   noise.bias.setConstant(1e-5);
   std::vector<SmootherFrame> run;
-  for (int k = 0; k < 2 * kPerfect; ++k) {
+  for (int k = 0; k < 2 * kUndisturbed; ++k) {
     SmootherFrame frame;
     frame.map_from_base = {0.02 * k, 0.0, 0.0};
     frame.match.found = true;
     frame.match.map_from_base = frame.map_from_base;
     frame.match.information = Eigen::Vector3d(1e4, 1e6, 1e7).asDiagonal();
-    if (k > 0) frame.motion = Pose2{k < kPerfect ? 0.02 : 0.022, 0.0, 0.0};
+    if (k > 0) frame.motion = Pose2{k < kUndisturbed ? 0.02 : 0.022, 0.0, 0.0};
     run.push_back(frame);
   }
   EXPECT_GT(FarthestOff(run, Smoothed(run, noise, 0.3)), 0.01);
-  for (int k = kPerfect; k < 2 * kPerfect; ++k) {
+  for (int k = kUndisturbed; k < 2 * kUndisturbed; ++k) {
     run[static_cast<std::size_t>(k)].growth.setConstant(200.0);
   }
   EXPECT_LT(FarthestOff(run, Smoothed(run, noise, 0.3)), 0.003);
