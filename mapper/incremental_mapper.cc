@@ -214,6 +214,9 @@ void IncrementalMapper::State::MovePart(int first, const Pose2& motion) {
   }
   mapped.ForgetMotionTo(first);
   MoveTo(map_from_base, {}, first);
+  // What these collect lies where the part was.
+  slides.Forget();
+  if (loop_search) loop_search->Forget();
 }
 
 // Moves all frames mapped since the loss once the search has found their place.
@@ -223,8 +226,6 @@ void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& re
   const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
   if (!moved) return;
   MovePart(relocation.first_frame(), *moved);
-  slides.Forget();
-  if (loop_search) loop_search->Forget();
   report.relocated = true;
 }
 
