@@ -22,32 +22,28 @@ SplineWeights CatmullRom(double t) {
           {-3.0 * t + 2.0, 9.0 * t - 5.0, -9.0 * t + 4.0, 3.0 * t - 1.0}};
 }
 
-// The 4 x 4 cells that a point is interpolated from.
+// The first of four cells along an axis that a coordinate is interpolated from, and all weights.
 struct Neighbours {
-  Cell first;
-  SplineWeights x;
-  SplineWeights y;
+  int first_cell;
+  SplineWeights weights;
 };
 
-Neighbours NeighboursOf(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
-  const double r = view.geometry.resolution_m;
-  const double u = point_in_map.x() / r - 0.5;  // values are at cell centres
-  const double v = point_in_map.y() / r - 0.5;
+Neighbours NeighboursOf(double coordinate_m, double resolution_m) {
+  const double u = coordinate_m / resolution_m - 0.5;  // values are at cell centres
   const double u0 = std::floor(u);
-  const double v0 = std::floor(v);
-  return {
-      {static_cast<int>(u0) - 1, static_cast<int>(v0) - 1}, CatmullRom(u - u0), CatmullRom(v - v0)};
+  return {static_cast<int>(u0) - 1, CatmullRom(u - u0)};
 }
 
 }  // namespace
 
 BicubicSample SampleBicubic(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {
   const double r = view.geometry.resolution_m;
-  const auto [first, wx, wy] = NeighboursOf(view, point_in_map);
+  const auto [first_x, wx] = NeighboursOf(point_in_map.x(), r);
+  const auto [first_y, wy] = NeighboursOf(point_in_map.y(), r);
   BicubicSample sample;
   for (int j = 0; j < 4; ++j) {
     for (int i = 0; i < 4; ++i) {
-      const double p = view.At({first.x + i, first.y + j});
+      const double p = view.At({first_x + i, first_y + j});
       sample.value += wx.value[i] * wy.value[j] * p;
       sample.dx += wx.first[i] * wy.value[j] * p / r;
       sample.dy += wx.value[i] * wy.first[j] * p / r;
@@ -60,9 +56,8 @@ BicubicSample SampleBicubic(const ProbabilityView& view, const Eigen::Vector2d& 
 }
 
 SplineAlongAxis SplineAt(double coordinate_m, double resolution_m) {
-  const double u = coordinate_m / resolution_m - 0.5;  // values are at cell centres
-  const double u0 = std::floor(u);
-  return {static_cast<int>(u0) - 1, CatmullRom(u - u0).value};
+  const Neighbours neighbours = NeighboursOf(coordinate_m, resolution_m);
+  return {neighbours.first_cell, neighbours.weights.value};
 }
 
 double BicubicValue(const ProbabilityView& view, const Eigen::Vector2d& point_in_map) {

@@ -80,13 +80,19 @@ TEST(GroupMotions, NeitherIsOneThatWasHardlySeenNorOneAfterAJump) {
   EXPECT_TRUE(starts.back().settled);  // after the next tie
 }
 
+// Groups of two frames each.
+SurfelGroups PairsOf(const std::vector<MappedFrame>& frames) {
+  SurfelGroupOptions options;
+  options.length_m = 0.15;
+  SurfelGroups pairs(options);
+  for (const MappedFrame& frame : frames) pairs.Add({}, frame.map_from_base);
+  return pairs;
+}
+
 // Of several steps without SLAM's motion between two groups the variances add up.
 TEST(GroupMotions, AGapIsAsWideAsItsStepsTogether) {
   Walks walks(1);
-  SurfelGroupOptions options;
-  options.length_m = 0.15;  // two frames
-  SurfelGroups pairs(options);
-  for (const MappedFrame& frame : walks.frames) pairs.Add({}, frame.map_from_base);
+  const SurfelGroups pairs = PairsOf(walks.frames);
   ASSERT_EQ(pairs.groups()[2].first_frame, 4);
   walks.frames[3].slam_motion.reset();
   walks.frames[3].gap_share = 0.03;
@@ -210,10 +216,7 @@ TEST(GroupMotions, OnlyFramesThatFollowEachOtherHaveAPauseBetweenThem) {
 // group's others SLAM errs as it did before.
 TEST(GroupMotions, AFrameHasTheGrowthOfTheMotionThatContainsIt) {
   Walks walks(1);
-  SurfelGroupOptions options;
-  options.length_m = 0.15;  // two frames
-  SurfelGroups pairs(options);
-  for (const MappedFrame& frame : walks.frames) pairs.Add({}, frame.map_from_base);
+  const SurfelGroups pairs = PairsOf(walks.frames);
   walks.frames[4].slam_motion.reset();  // the first frame of group 2
   const std::vector<GroupMotion> motions = MotionsOf(pairs, walks.frames);
   std::vector<Eigen::Vector3d> of_motions;
