@@ -77,12 +77,16 @@ std::optional<GroupLink> TieBefore(const SurfelGroups& of, const std::vector<Map
   return TieOf(before, frames[first - 1].match, *motion, group);
 }
 
-// Whether the last kept frame before a group's first is in group g - 1. Not always so for groups
-// joined in place (SurfelGroups::Joined), which hold frames of several visits.
+// Whether group g follows group g - 1 in time. Not always so for groups joined in place
+// (SurfelGroups::Joined), which hold frames of several visits: others may have come between, even
+// where the last visit was to group g - 1 again.
 bool GoesOnFromLast(const SurfelGroups& of, const std::vector<MappedFrame>& frames, std::size_t g) {
-  auto before = static_cast<std::size_t>(of.groups()[g].first_frame) - 1;
-  while (!frames[before].kept()) --before;
-  return of.places()[before].group == static_cast<int>(g) - 1;
+  const int last = static_cast<int>(g) - 1;
+  const auto first = static_cast<std::size_t>(of.groups()[g].first_frame);
+  for (auto i = static_cast<std::size_t>(of.groups()[g - 1].first_frame); i < first; ++i) {
+    if (frames[i].kept() && of.places()[i].group != last) return false;
+  }
+  return true;
 }
 
 }  // namespace

@@ -39,6 +39,17 @@ struct Walks {
     }
   }
 
+  // The next frame, kept, after this motion.
+  void AddAfter(const Pose2& motion) {
+    MappedFrame frame = frames.back();
+    frame.frame += 1;
+    frame.tied_to = -1;
+    frame.slam_motion = motion;
+    frame.map_from_base = frame.map_from_base * motion;
+    frames.push_back(frame);
+    groups.Add({}, frame.map_from_base);
+  }
+
   SurfelGroups Joined(int most) const {
     return groups.Joined({.most = most, .most_of_prior_map = most, .in_place = true},
                          StartsOf(groups, frames));
@@ -118,13 +129,8 @@ TEST(GroupMotions, ManyWalksBecomeAsManyGroupsAsAFew) {
 TEST(GroupMotions, GroupsOfOnePlaceGoOnFromTheFrameBefore) {
   Walks walks(6);
   for (const int more : {0, 1}) walks.Add(6 * kSteps + more, false);
-  const Pose2 last = walks.frames.back().map_from_base;
-  MappedFrame elsewhere = walks.frames.back();
-  elsewhere.frame += 1;
-  elsewhere.map_from_base = last * Pose2{3.0, 1.0, 0.0};
-  elsewhere.slam_motion = Pose2{3.0, 1.0, 0.0};
-  walks.frames.push_back(elsewhere);
-  walks.groups.Add({}, elsewhere.map_from_base);
+  walks.AddAfter({3.0, 1.0, 0.0});
+  const MappedFrame& elsewhere = walks.frames.back();
   const SurfelGroups joined = walks.Joined(15);
   ASSERT_LE(joined.groups().size(), 15U);
   const std::vector<GroupMotion> motions = MotionsOf(joined, walks.frames);
@@ -138,6 +144,24 @@ TEST(GroupMotions, GroupsOfOnePlaceGoOnFromTheFrameBefore) {
               1e-9);
   EXPECT_TRUE(motions[1].known);
   EXPECT_FALSE(motions[1].tie);
+}
+
+// Nor is a round from the group that began last and back to it a motion.
+TEST(GroupMotions, ARoundBackToTheLastGroupIsNoMotion) {
+  const Pose2 away{3.0, 1.0, 0.0};
+  Walks walks(6);
+  walks.AddAfter(away);
+  const Pose2 there = walks.frames.back().map_from_base;
+  for (int i = 6 * kSteps + 1; i < 7 * kSteps; ++i) walks.Add(i, false);
+  walks.AddAfter(Between(walks.frames.back().map_from_base, there));
+  walks.AddAfter(away);
+  const SurfelGroups joined = walks.Joined(15);
+  const int last = static_cast<int>(joined.groups().size()) - 2;
+  ASSERT_EQ(joined.places()[walks.frames.size() - 2].group, last);
+  const GroupMotion motion = MotionsOf(joined, walks.frames).back();
+  EXPECT_FALSE(motion.known);
+  ASSERT_TRUE(motion.tie);
+  EXPECT_EQ(motion.tie->first, last);
 }
 
 TEST(GroupMotions, APriorMapsGroupsOfOnePlaceAreHeldAsItHadThem) {
