@@ -60,8 +60,9 @@ Eigen::Matrix3d InformationFor(const Prediction& prediction, const MatchResult& 
 FusedPose FuseWithGain(const Prediction& prediction, const MatchResult& match,
                        const Eigen::Vector3d& gain);
 
-// The Kalman gain K = (I + P L)^-1 P L with the match's information L: the information filter's
-// update without inverting P or L, either of which may be singular.
+// The Kalman gain K = (I + P L)^-1 P L with the match's information L, in base axes of the
+// prediction (InformationIn): the information filter's update without inverting P or L, either of
+// which may be singular.
 FusedPose FuseKalman(const Prediction& prediction, const MatchResult& match);
 
 // Information L after an independent error of covariance C is added: (L^-1 + C)^-1 = (I + L C)^-1

@@ -194,7 +194,9 @@ std::vector<Pose2> Smoothed(const std::vector<SmootherFrame>& frames, const Moti
     Prediction prediction;
     prediction.map_from_base = state.map_from_base[k];
     prediction.covariance = jitter;
-    state.map_from_base[k] = FuseKalman(prediction, frames[k].match).map_from_base;
+    MatchResult match = frames[k].match;
+    match.information = InformationIn(prediction.map_from_base, match);
+    state.map_from_base[k] = FuseKalman(prediction, match).map_from_base;
   }
   return state.map_from_base;
 }

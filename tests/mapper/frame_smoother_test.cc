@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "mapper/fuse/fusion.h"
+
 namespace depthgrid {
 namespace {
 
@@ -57,6 +59,30 @@ TEST(Smoothed, GoesWhereMatchesSay) {
     const std::vector<Pose2> smoothed = Smoothed(run, LastingBias(), stay_m);
     for (const Pose2& pose : smoothed) EXPECT_NEAR(pose.y_m, 0.05, 1e-4);
   }
+}
+
+// SLAM's pose jitters by 5 cm and 0.1 rad in one frame before a wall. Its match says nothing of the
+// way along the wall, although its base axes are turned against those of all other poses.
+TEST(Smoothed, JitterBeforeAWallMovesNothingAlongIt) {
+  constexpr std::size_t kJitters = 20;
+  MatchResult match;
+  match.found = true;
+  match.information = Eigen::Vector3d(1e6, 0.0, 1e7).asDiagonal();
+  std::vector<SmootherFrame> run(2 * kJitters + 1);
+  for (SmootherFrame& frame : run) {
+    frame.match = match;
+    frame.motion = Pose2{};
+  }
+  const Pose2 jitter{0.05, 0.0, 0.1};
+  run[kJitters].match.information = InformationIn(jitter, match);
+  run[kJitters].match.map_from_base = jitter;
+  MotionNoise noise;
+  noise.jitter = {0.05, 0.05, 0.1};
+  noise.walk.setConstant(1e-5);
+  const Pose2 jittering = Smoothed(run, noise, 0.3)[kJitters];
+  EXPECT_NEAR(jittering.x_m, 0.05, 1e-3);
+  EXPECT_NEAR(jittering.y_m, 0.0, 1e-4);
+  EXPECT_NEAR(jittering.yaw_rad, 0.1, 1e-3);
 }
 
 // SLAM's bias after a stand is the one before: what is known of it does not fade meanwhile, so that
