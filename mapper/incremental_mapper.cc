@@ -329,6 +329,10 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   if (!scans.matched || fixed_map || !IsOnAMap(fused.map_from_base)) return;
   MappedFrame frame = AsMapped(fused.map_from_base);
   frame.match = report.match;
+  // In a report it is in axes of the predicted pose.
+  frame.match.information =
+      InformationIn(report.match.map_from_base,
+                    {report.match.found, prediction.map_from_base, report.match.information});
   history.newest().mapped = mapped.size();
   // Without matching (SLAM trusted alone) scans count as explained.
   std::optional<double> explained = 1.0;

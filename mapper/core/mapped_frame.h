@@ -30,7 +30,7 @@ struct MappedFrame {
   double gap_share = 1.0;
   // SLAM's pose did not move since the previous frame (Standing).
   bool stands = false;
-  MatchResult match;
+  MatchResult match;  // its information in axes of the matched pose
 
   bool kept() const { return tied_to < 0; }
   bool of_prior_map() const { return frame < 0; }

@@ -301,5 +301,28 @@ TEST(SurfelMethod, UndoesTheDriftOfItsPrior) {
   EXPECT_LT(error_m, 0.25 * prior_error_m);
 }
 
+// A frame that was mapped has its match as the scan told it, whatever SLAM predicted: before a wall
+// nothing of the way along it, where in axes of the turned prediction there is some.
+TEST(SurfelMapping, AMappedFramesMatchIsInAxesOfTheMatch) {
+  const PlanarWorld wall = {{{2.0, -20.0}, {2.0, 20.0}}};
+  IncrementalMapper mapper(MapperOptions(), std::nullopt);
+  FrameReport report;
+  for (int i = 0; i < 2; ++i) {
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    frame.slam_from_camera = CameraOf({0.0, 0.0, 0.05 * i}, 1.0);
+    frame.scan = std::make_shared<Scan>(ScanOf(wall, {}, {}));
+    report = mapper.AddFrame(frame);
+  }
+  const auto along = [](const Eigen::Matrix3d& information) {
+    return information(1, 1) / information(0, 0);
+  };
+  ASSERT_TRUE(report.match.found);
+  EXPECT_NEAR(report.match.map_from_base.yaw_rad, 0.0, 1e-3);
+  EXPECT_GT(along(report.match.information), 1e-3);
+  EXPECT_LT(along(mapper.CurrentMapped().back().match.information), 1e-4);
+}
+
 }  // namespace
 }  // namespace depthgrid
