@@ -183,8 +183,8 @@ bool RangeNoise::ShowNoise(std::size_t power) const {
   return 2.0 * noisy > samples;
 }
 
-double RangeNoise::RelativeSigma(double range_m, int stride) const {
-  const std::array<double, kRangeBins>& relative_sigma = DifferencesAt(stride).relative_sigma;
+double RangeNoise::RelativeSigma(double range_m) const {
+  const std::array<double, kRangeBins>& relative_sigma = by_stride_[chosen_].relative_sigma;
   // Linear between the bins' centres on the logarithm of the range.
   const double place = std::log2(range_m / kFirstRangeM) * kRangeBinsPerOctave - 0.5;
   const double clamped = std::clamp(place, 0.0, kRangeBins - 1.0);

@@ -19,11 +19,11 @@ class RangeNoise {
   // `skips_alike`: whether stride() may exceed 1.
   explicit RangeNoise(bool skips_alike = true);
   void Add(const Scan& scan);
-  // sigma(r) / r estimated from beams `stride` apart: 1, or stride().
-  double RelativeSigma(double range_m, int stride) const;
+  // sigma(r) / r, estimated from beams stride() apart.
+  double RelativeSigma(double range_m) const;
   // Whether it tells what the sensor's reach cut off: not while little was seen, and that near the
   // reach, since sigma is a cheap scanner's until it is learnt.
-  bool TellsCutoff(int stride) const { return DifferencesAt(stride).tells_cutoff; }
+  bool TellsCutoff() const { return by_stride_[chosen_].tells_cutoff; }
   // Spacing of beams from which their errors are independent: 1, 2, 4, 8, 16 or 32.
   int stride() const { return 1 << chosen_; }
 
@@ -54,9 +54,6 @@ class RangeNoise {
     // none.
     bool LearnFrom(const Samples& samples, std::uint32_t least, double factor);
   };
-  const Differences& DifferencesAt(int stride) const {
-    return by_stride_[stride == 1 ? 0 : chosen_];
-  }
   bool AreAlike(std::size_t power) const;
   bool ShowNoise(std::size_t power) const;
 

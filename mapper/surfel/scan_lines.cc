@@ -160,7 +160,8 @@ ScanLine ScanLineFinder::Fit(Span span, const Sums& s, const ScanReturns& return
   // The variance of atan2(b, a), from the inverse of (aa ab; ab bb).
   const double length2 = a * a + b * b;
   const double variance = (b * b * bb + 2.0 * a * b * ab + a * a * aa) / determinant;
-  const double misfit = (Chi2(s) + kReturnsLikeNoise) / (span.size() - kFitted + kReturnsLikeNoise);
+  const double independent = std::max(span.size() * returns.independent_share(), kFitted);
+  const double misfit = (Chi2(s) + kReturnsLikeNoise) / (independent - kFitted + kReturnsLikeNoise);
   return {span, a * ahead + b * left, std::sqrt(variance) / length2, std::max(misfit, 1.0)};
 }
 
@@ -186,7 +187,7 @@ std::optional<ScanLine> ScanLineFinder::WithinReach(const ScanLine& fitted,
       const double inverse_range = line.coefficients.dot(r.direction);
       const RangeCutoff cutoff = CutoffAt(sigmas(i));
       r.inverse_range = 1.0 / (r.range_m + cutoff.shortfall * r.relative_sigma / inverse_range);
-      r.information = cutoff.information;
+      r.information = returns.independent_share() * cutoff.information;
       information += r.information;
       Add(r, inverse_range, sums);
     }

@@ -18,7 +18,8 @@ void ScanReturns::Read(const Scan& scan, const RangeNoise& noise, int stride) {
   LearnDirections(scan);
   step_rad_ = stride * beam_step_rad_;
   returns_.clear();
-  max_range_m_ = noise.TellsCutoff(stride) ? scan.max_range_m : 0.0;
+  independent_share_ = static_cast<double>(stride) / noise.stride();
+  max_range_m_ = noise.TellsCutoff() ? scan.max_range_m : 0.0;
   double looked_up_m = 0.0;
   double relative_sigma = 0.0;
   for (std::size_t i = 0; i < scan.beams.size(); i += static_cast<std::size_t>(stride)) {
@@ -26,10 +27,10 @@ void ScanReturns::Read(const Scan& scan, const RangeNoise& noise, int stride) {
     const double range_m = scan.beams[i].range_m;
     if (std::abs(range_m - looked_up_m) > kNoiseLookupShare * looked_up_m) {
       looked_up_m = range_m;
-      relative_sigma = noise.RelativeSigma(range_m, stride);
+      relative_sigma = noise.RelativeSigma(range_m);
     }
-    returns_.push_back(
-        {bearings_rad_[i], directions_[i], range_m, 1.0 / range_m, relative_sigma, 1.0});
+    returns_.push_back({bearings_rad_[i], directions_[i], range_m, 1.0 / range_m, relative_sigma,
+                        independent_share_});
   }
   DropLoneOutliers();
   Cut();

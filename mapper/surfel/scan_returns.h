@@ -22,7 +22,8 @@ struct ScanReturn {
   double range_m = 0.0;         // as measured
   double inverse_range = 0.0;   // 1/m; near the sensor's reach corrected for what it cut off
   double relative_sigma = 0.0;  // of the range and of its inverse
-  double information = 1.0;     // relative to a return far from the sensor's reach
+  // Relative to an independent return far from the sensor's reach.
+  double information = 1.0;
 };
 
 class ScanReturns {
@@ -37,6 +38,9 @@ class ScanReturns {
   const ScanReturn& operator[](int i) const { return returns_[static_cast<std::size_t>(i)]; }
   ScanReturn& operator[](int i) { return returns_[static_cast<std::size_t>(i)]; }
   const std::vector<Span>& runs() const { return runs_; }
+  // Independent returns a return: below 1 where beams are read that err as their neighbours do
+  // (RangeNoise::stride()).
+  double independent_share() const { return independent_share_; }
   double step_rad() const { return step_rad_; }  // mean angle between beams read
   // The sensor's reach; 0: not known, or what it cut off is not (RangeNoise::TellsCutoff).
   double max_range_m() const { return max_range_m_; }
@@ -53,6 +57,7 @@ class ScanReturns {
   double beam_step_rad_ = 1.0;
   double step_rad_ = 1.0;  // between beams read
   double max_range_m_ = 0.0;
+  double independent_share_ = 1.0;
   std::vector<ScanReturn> returns_;
   std::vector<Span> runs_;
 };

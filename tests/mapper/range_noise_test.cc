@@ -53,7 +53,7 @@ TEST(RangeNoise, BeamsThatErrByThemselvesAllCount) {
     noise.Add(WallWithNoise(random, 0.0));
     EXPECT_EQ(noise.stride(), 1) << i;
   }
-  EXPECT_NEAR(noise.RelativeSigma(kRangeM, 1), kRelativeSigma, 0.1 * kRelativeSigma);
+  EXPECT_NEAR(noise.RelativeSigma(kRangeM), kRelativeSigma, 0.1 * kRelativeSigma);
 }
 
 // The longest ranges of a wall near the sensor's reach are missing, so what is left differs less.
@@ -67,8 +67,8 @@ TEST(RangeNoise, IsTheSameNearTheSensorsReach) {
     const double wall_m = 4.0 + 0.01 * frame;
     noise.Add(ScanOf({{{wall_m, -8.0}, {wall_m, 8.0}}}, {}, laser, 3, frame));
   }
-  EXPECT_NEAR(noise.RelativeSigma(4.0, 1), kRelative, 0.04 * kRelative);
-  EXPECT_NEAR(noise.RelativeSigma(5.9, 1), kRelative, 0.04 * kRelative);
+  EXPECT_NEAR(noise.RelativeSigma(4.0), kRelative, 0.04 * kRelative);
+  EXPECT_NEAR(noise.RelativeSigma(5.9), kRelative, 0.04 * kRelative);
 }
 
 // The value to begin with is ten times as large here: with it, all of this wall would count as so
@@ -82,8 +82,8 @@ TEST(RangeNoise, IsLearntFromAWallAtTheReachAlone) {
   for (std::uint32_t frame = 0; frame < 20; ++frame) {
     noise.Add(ScanOf({{{5.95, -8.0}, {5.95, 8.0}}}, {}, laser, 3, frame));
   }
-  EXPECT_TRUE(noise.TellsCutoff(1));
-  EXPECT_NEAR(noise.RelativeSigma(5.95, 1), kRelative, 0.2 * kRelative);
+  EXPECT_TRUE(noise.TellsCutoff());
+  EXPECT_NEAR(noise.RelativeSigma(5.95), kRelative, 0.2 * kRelative);
 }
 
 TEST(RangeNoise, OfBeamsThatErrAlikeOnlySomeCount) {
@@ -97,9 +97,8 @@ TEST(RangeNoise, OfBeamsThatErrAlikeOnlySomeCount) {
     }
     EXPECT_EQ(noise.stride(), stride) << length;
     EXPECT_EQ(all.stride(), 1) << length;
-    EXPECT_NEAR(noise.RelativeSigma(kRangeM, stride), kRelativeSigma, 0.4 * kRelativeSigma)
-        << length;
-    EXPECT_LT(noise.RelativeSigma(kRangeM, 1), 0.4 * kRelativeSigma) << length;
+    EXPECT_NEAR(noise.RelativeSigma(kRangeM), kRelativeSigma, 0.4 * kRelativeSigma) << length;
+    EXPECT_LT(all.RelativeSigma(kRangeM), 0.4 * kRelativeSigma) << length;
   }
 }
 
@@ -110,7 +109,7 @@ TEST(RangeNoise, OfBeamsThatErrVerySmoothlyFewCount) {
     RangeNoise noise;
     for (int i = 0; i < 40; ++i) noise.Add(WallWithNoise(random, length, sigma));
     EXPECT_EQ(noise.stride(), length > 6.0 ? 16 : 8) << length;
-    EXPECT_GT(noise.RelativeSigma(kRangeM, noise.stride()), 0.2 * sigma) << length;
+    EXPECT_GT(noise.RelativeSigma(kRangeM), 0.2 * sigma) << length;
   }
 }
 
@@ -122,26 +121,38 @@ TEST(RangeNoise, OfExactRangesAllCount) {
   EXPECT_EQ(noise.stride(), 1);
 }
 
-// How far off normals of a wall's lines are, over what is claimed: the median.
-double NormalErrors(bool skips_alike) {
+// How far off the pieces of a wall and their normals are, over what is claimed: the medians.
+struct Errors {
+  double point = 0.0;
+  double normal = 0.0;
+};
+enum class Beams { kAll, kIndependent };
+Errors ErrorsOfPieces(bool skips_alike, Beams beams) {
   RandomStream random(3, RandomStage::kTest);
   RangeNoise noise(skips_alike);
   ScanSurfelMaker maker({});
-  std::vector<double> errors;
+  std::vector<double> points, normals;
   for (int i = 0; i < 40; ++i) {
     const Scan scan = WallWithNoise(random, 6.0);
     noise.Add(scan);
-    for (const Surfel& surfel : maker.Make(scan, noise)) {
+    const int stride = beams == Beams::kAll ? 1 : noise.stride();
+    for (const Surfel& surfel : maker.Make(scan, noise, stride)) {
+      points.push_back(std::abs(surfel.point_m.x() - kRangeM) * std::sqrt(surfel.information));
       const double off_rad = std::atan2(surfel.normal.y(), -surfel.normal.x());
-      errors.push_back(std::abs(off_rad) * std::sqrt(surfel.normal_information));
+      normals.push_back(std::abs(off_rad) * std::sqrt(surfel.normal_information));
     }
   }
-  return kSigmaOfMedian * UpperMedian(errors);
+  return {kSigmaOfMedian * UpperMedian(points), kSigmaOfMedian * UpperMedian(normals)};
 }
 
 TEST(RangeNoise, LinesOfBeamsThatErrAlikeClaimWhatTheyAreWorth) {
-  EXPECT_GT(NormalErrors(false), 5.0);
-  EXPECT_LT(NormalErrors(true), 3.0);  // beams 8 apart still share .4 of their errors
+  EXPECT_GT(ErrorsOfPieces(false, Beams::kIndependent).normal, 5.0);
+  EXPECT_GT(ErrorsOfPieces(false, Beams::kIndependent).point, 5.0);
+  for (const Beams beams : {Beams::kIndependent, Beams::kAll}) {
+    // Beams 8 apart still share .4 of their errors.
+    EXPECT_LT(ErrorsOfPieces(true, beams).normal, 3.0);
+    EXPECT_LT(ErrorsOfPieces(true, beams).point, 3.0);
+  }
 }
 
 }  // namespace

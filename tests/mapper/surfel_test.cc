@@ -43,7 +43,7 @@ TEST(RangeNoise, LearnsSigmaInSpiteOfCorners) {
       noise.Add(ScanOf(Room(), {0.0, 0.0, 0.3 * frame}, NoisyLaser(sigma), 7,
                        static_cast<std::uint32_t>(frame)));
     }
-    EXPECT_NEAR(noise.RelativeSigma(2.5, 1) / sigma, 1.0, 0.1) << sigma;
+    EXPECT_NEAR(noise.RelativeSigma(2.5) / sigma, 1.0, 0.1) << sigma;
   }
 }
 
