@@ -56,6 +56,13 @@ Eigen::Vector3d SeenStep(const NormalEquations& equations) {
   return step;
 }
 
+// The factor that Misfit gives by chance: sigma by the median of n normal variables has a standard
+// deviation of 1.17 / sqrt(n) of it (Rousseeuw and Croux 1993), of which three are allowed.
+double ChanceFactor(int pairs) {
+  const double sigma = 1.0 + 3.0 * 1.17 / std::sqrt(static_cast<double>(pairs));
+  return sigma * sigma;
+}
+
 }  // namespace
 
 void SurfelMatchOptions::Visit(OptionsVisitor& v) {
@@ -93,9 +100,12 @@ PairGates SurfelMatcher::Gates() const {
 
 PairEvaluation SurfelMatcher::Judged(PairEvaluation evaluation) const {
   if (options_.judge_misfit) {
-    evaluation.equations.h /= evaluation.variance_factor;
-    evaluation.equations.g /= evaluation.variance_factor;
-    evaluation.equations.false_h /= evaluation.variance_factor;
+    const double factor = evaluation.variance_factor;
+    evaluation.equations.h /= factor;
+    evaluation.equations.g /= factor;
+    // The weights in false_h fall by the factor, and the normals' variances rise by it, as both
+    // follow from the same ranges. Not by what chance alone gives.
+    evaluation.equations.false_h /= std::min(factor, ChanceFactor(evaluation.used));
   }
   return evaluation;
 }

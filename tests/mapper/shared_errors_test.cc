@@ -114,6 +114,39 @@ TEST(SharedErrors, MatchOfCompanionsIsBelievedLess) {
   EXPECT_EQ(believing.Match(wall, map, prediction).information, alone.information);
 }
 
+// Pieces of a wall across the view that err by 1 cm and 0.05 rad, and claim to err by `claimed` of
+// that.
+std::vector<Surfel> NoisyWall(RandomStream& random, double claimed) {
+  constexpr double kOffM = 0.01;
+  constexpr double kOffRad = 0.05;
+  std::vector<Surfel> wall(100);
+  for (std::size_t i = 0; i < wall.size(); ++i) {
+    const double off_rad = kOffRad * random.Normal();
+    wall[i].point_m = {2.0 + kOffM * random.Normal(), 0.05 * static_cast<double>(i) - 2.5};
+    wall[i].normal = {-std::cos(off_rad), std::sin(off_rad)};
+    wall[i].information = 1.0 / (claimed * claimed * kOffM * kOffM);
+    wall[i].normal_information = 1.0 / (claimed * claimed * kOffRad * kOffRad);
+  }
+  return wall;
+}
+
+TEST(SurfelMatcher, NoiseBeyondWhatIsClaimedTellsNothingAlongAWall) {
+  RandomStream random(7, RandomStage::kTest);
+  Prediction prediction;
+  prediction.covariance = Eigen::Vector3d(0.01, 0.01, 0.01).asDiagonal();
+  for (const double claimed : {1.0, 0.125}) {
+    for (int i = 0; i < 20; ++i) {
+      const SurfelStore map = MapOfPieces(NoisyWall(random, claimed));
+      const MatchResult match =
+          SurfelMatcher({}).Match(NoisyWall(random, claimed), map, prediction);
+      ASSERT_TRUE(match.found);
+      EXPECT_GT(match.information(0, 0), 1e5) << claimed;
+      // The normals alone feign 0.05^2.
+      EXPECT_LT(match.information(1, 1), 5e-4 * match.information(0, 0)) << claimed;
+    }
+  }
+}
+
 // Far from the minimum all residuals are large, and none of that is misfit.
 TEST(SurfelMatcher, AWrongPredictionIsNoMisfit) {
   const std::vector<Surfel> wall = FlatWall();
