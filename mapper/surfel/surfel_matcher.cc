@@ -18,6 +18,10 @@ constexpr double kConvergedRad = 4e-6;
 // judged"). Before, residuals are large because the prediction is wrong, and the misfit would keep
 // the match at it.
 constexpr int kStepsBeforeJudging = 2;
+// A factor of Misfit that chance gives: sigma by the median of n normal variables has a standard
+// deviation of 1.17 / sqrt(n) of itself (Rousseeuw and Croux 1993); three of those for n = 70.
+// Well below SurfelMatchOptions::debias, so that what noise feigns is taken off all the same.
+constexpr double kChanceFactor = 2.0;
 // Surfels whose mean frame is among the last this many (a third of a second) may belong to
 // something that moves (5, 7 and 20 are no better: docs/tried.md, "What moves").
 constexpr double kYoungFrames = 10.0;
@@ -54,13 +58,6 @@ Eigen::Vector3d SeenStep(const NormalEquations& equations) {
   step = unit.cwiseProduct(step);
   step.z() = std::clamp(step.z(), -kFarthestRad, kFarthestRad);
   return step;
-}
-
-// The factor that Misfit gives by chance: sigma by the median of n normal variables has a standard
-// deviation of 1.17 / sqrt(n) of it (Rousseeuw and Croux 1993), of which three are allowed.
-double ChanceFactor(int pairs) {
-  const double sigma = 1.0 + 3.0 * 1.17 / std::sqrt(static_cast<double>(pairs));
-  return sigma * sigma;
 }
 
 }  // namespace
@@ -103,9 +100,9 @@ PairEvaluation SurfelMatcher::Judged(PairEvaluation evaluation) const {
     const double factor = evaluation.variance_factor;
     evaluation.equations.h /= factor;
     evaluation.equations.g /= factor;
-    // The weights in false_h fall by the factor, and the normals' variances rise by it, as both
-    // follow from the same ranges. Not by what chance alone gives.
-    evaluation.equations.false_h /= std::min(factor, ChanceFactor(evaluation.used));
+    // The weights fall by the factor, and the normals' variances rise by it, as points and normals
+    // come from the same ranges. Not by what may be chance.
+    evaluation.equations.false_h /= std::min(factor, kChanceFactor);
   }
   return evaluation;
 }
