@@ -38,8 +38,8 @@ class ScanReturns {
   const ScanReturn& operator[](int i) const { return returns_[static_cast<std::size_t>(i)]; }
   ScanReturn& operator[](int i) { return returns_[static_cast<std::size_t>(i)]; }
   const std::vector<Span>& runs() const { return runs_; }
-  // Independent returns a return: below 1 where beams are read that err as their neighbours do
-  // (RangeNoise::stride()).
+  // How many independent returns a return is worth: less than 1 where beams are read that err as
+  // their neighbours do (RangeNoise::stride()).
   double independent_share() const { return independent_share_; }
   double step_rad() const { return step_rad_; }  // mean angle between beams read
   // The sensor's reach; 0: not known, or what it cut off is not (RangeNoise::TellsCutoff).

@@ -60,6 +60,7 @@ class KilledSweep : public SweepTableTest {
   }
 };
 
+// A fifth of it under a sanitizer, where a start and a run take ten times as long.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr std::size_t kKills = 10;
 #else

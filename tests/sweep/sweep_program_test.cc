@@ -86,7 +86,6 @@ TEST_F(ProgramSweep, PartsJoinToTheWhole) {
   EXPECT_EQ(Program("sweep --merge part1 part2 part3 part1 -o doubled").exit_code, 2);
 }
 
-// A fifth of it under a sanitizer, where a start and a run take ten times as long.
 TEST_F(ProgramSweep, AFailingRunIsRecordedAndTheOthersGoOn) {
   Write("failing.yaml", R"(
 experiment: ./small.yaml
