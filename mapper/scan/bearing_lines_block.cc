@@ -61,12 +61,14 @@ HWY_INLINE Linear LinearInRow(Vec fx, Vec fy, Vec f1, const RayOfRow& ray, const
   return {hn::Sub(hn::Add(hn::Mul(fx, ray.a_at_b0), f1), Times(axes.cy_px, slope)), slope};
 }
 
+// Rows where the line lies between the centres of the outer pixels. In the outer half of those
+// depth could only be that of their centre, and a wall that recedes would bend at the image's edge.
 HWY_INLINE Rows RowsInImage(const Linear& horizontal, const Linear& column, const ImageAxes& axes) {
   const Doubles d;
   Rows rows{hn::Zero(d), hn::Set(d, axes.height_px - 1.0)};
   rows = ClipBelow(horizontal, kMinHorizontal, rows);
-  rows = ClipBelow(column, -0.5, rows);
-  return ClipBelow(-column, -(axes.width_px - 0.5), rows);
+  rows = ClipBelow(column, 0.0, rows);
+  return ClipBelow(-column, -(axes.width_px - 1.0), rows);
 }
 
 void FindLanes(const ImageAxes& axes, const BlockDirections& directions, BearingLineBlock& lines) {

@@ -119,16 +119,21 @@ SurfelMap::SurfelMap(const SurfelOptions& options)
       matcher_(options.match),
       groups_(options.joint.groups) {}
 
+void SurfelMap::Learn(const Scan& scan) {
+  noise_.Add(scan);
+  matcher_.SetBeamsErrAlike(noise_.stride() > 1);
+}
+
 const std::vector<Surfel>& SurfelMap::PiecesOf(const std::shared_ptr<const Scan>& scan) {
   if (scan == scan_) return pieces_;
-  noise_.Add(*scan);
+  Learn(*scan);
   pieces_ = maker_.Make(*scan, noise_, noise_.stride(), std::move(pieces_));
   scan_ = scan;
   return pieces_;
 }
 
 std::vector<Surfel> SurfelMap::Cut(const Scan& scan) {
-  noise_.Add(scan);
+  Learn(scan);
   return maker_.Make(scan, noise_);
 }
 

@@ -83,6 +83,8 @@ class SurfelMap : public ReferenceMap {
                                   const std::vector<Pose2>& map_from_group,
                                   const std::optional<MotionSpread>& spread,
                                   const std::vector<Eigen::Vector3d>& growth);
+  // Learns the sensor's noise from a scan.
+  void Learn(const Scan& scan);
   const std::vector<Surfel>& PiecesOf(const std::shared_ptr<const Scan>& scan);
 
   SurfelOptions options_;

@@ -100,9 +100,10 @@ PairEvaluation SurfelMatcher::Judged(PairEvaluation evaluation) const {
     const double factor = evaluation.variance_factor;
     evaluation.equations.h /= factor;
     evaluation.equations.g /= factor;
-    // The weights fall by the factor, and the normals' variances rise by it, as points and normals
-    // come from the same ranges. Not by what may be chance.
-    evaluation.equations.false_h /= std::min(factor, kChanceFactor);
+    // The weights fall by the factor. Where beams err alike it is mostly noise's, and the normals'
+    // variances rise by it, as points and normals come from the same ranges: not by what may be
+    // chance. Elsewhere it is mostly the map's, whose normals hold all the same.
+    evaluation.equations.false_h /= beams_err_alike_ ? std::min(factor, kChanceFactor) : factor;
   }
   return evaluation;
 }

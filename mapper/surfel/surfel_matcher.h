@@ -37,6 +37,10 @@ class SurfelMatcher {
   // Sets the correlation of companions' errors (shared_errors.h) for later matches.
   void ShareErrors(double correlation) { correlation_ = correlation; }
   double shared_errors() const { return correlation_; }
+  // Sets whether neighbouring beams share their errors (RangeNoise::stride() above 1). A misfit
+  // then tells that normals err by as much more as points do.
+  void SetBeamsErrAlike(bool alike) { beams_err_alike_ = alike; }
+
   // Iterates to the maximum a posteriori, in which the prediction fixes directions that the scan
   // does not constrain. Returns the match alone: the minimum of the debiased equations and their
   // information. `parts`, if given, receives the map parts matched against.
@@ -69,6 +73,7 @@ class SurfelMatcher {
   SurfelMatchOptions options_;
   SurfelPairs pairs_;  // a member only to reuse its memory
   double correlation_ = 0.0;
+  bool beams_err_alike_ = false;
 };
 
 }  // namespace depthgrid

@@ -30,8 +30,8 @@ void Check(const PinholeCamera& camera, const Eigen::Quaterniond& level, const B
   // `spare` for single precision.
   const auto takes_part = [&](int v, double spare) {
     const double u = line.u0 + line.u1 * static_cast<double>(v);
-    return v >= 0 && v < camera.height_px && u >= -0.5 - spare &&
-           u <= camera.width_px - 0.5 + spare && along(ray_at(v)) >= 0.05 - spare;
+    return v >= 0 && v < camera.height_px && u >= -spare && u <= camera.width_px - 1.0 + spare &&
+           along(ray_at(v)) >= 0.05 - spare;
   };
   constexpr double kSpare = 1e-4;
   if (line.first_row > line.last_row) return;

@@ -77,6 +77,27 @@ TEST(DepthToScan, NoBeamIsEmptyWhenLevel) {
               67.25 * 639.0 / 640.0, 0.01);
 }
 
+// Four beams a pixel: those in the outer half of an outer pixel have no depth of their own, and with
+// that of its centre the wall would bend there by 2 cm.
+TEST(DepthToScan, AWallThatRecedesDoesNotBendAtTheImagesEdge) {
+  const AnalyticRoom room;
+  const PinholeCamera camera{160, 120, 120.0, 120.0, 79.5, 59.5, {}};
+  for (const double side : {-1.0, 1.0}) {
+    const Pose2 base{0.0, side * 1.5, 0.0};
+    const Pose3 pose = CameraOf(base, kCameraHeightM);
+    const Scan scan = DepthToScan(camera, {}).Convert(room.Render(camera, pose), pose);
+    int hits = 0;
+    for (std::size_t i = 0; i < 40; ++i) {
+      const Beam& beam = side < 0.0 ? scan.beams[i] : scan.beams[scan.beams.size() - 1 - i];
+      if (!beam.hit) continue;
+      ++hits;
+      const double truth_m = room.Level(base, beam.bearing_rad, kCameraHeightM).range_m;
+      EXPECT_NEAR(beam.range_m, truth_m, 0.002) << i;
+    }
+    EXPECT_GE(hits, 36);
+  }
+}
+
 TEST(DepthToScan, PortraitAndUpsideDownImagesGiveTheSameScan) {
   const AnalyticRoom room = RoomWithPillars();
   PinholeCamera camera;

@@ -137,14 +137,49 @@ TEST(SurfelMatcher, NoiseBeyondWhatIsClaimedTellsNothingAlongAWall) {
   for (const double claimed : {1.0, 0.125}) {
     for (int i = 0; i < 20; ++i) {
       const SurfelStore map = MapOfPieces(NoisyWall(random, claimed));
-      const MatchResult match =
-          SurfelMatcher({}).Match(NoisyWall(random, claimed), map, prediction);
+      SurfelMatcher matcher({});
+      matcher.SetBeamsErrAlike(true);
+      const MatchResult match = matcher.Match(NoisyWall(random, claimed), map, prediction);
       ASSERT_TRUE(match.found);
       EXPECT_GT(match.information(0, 0), 1e5) << claimed;
       // The normals alone feign 0.05^2.
       EXPECT_LT(match.information(1, 1), 5e-4 * match.information(0, 0)) << claimed;
     }
   }
+}
+
+// A map drawn at poses a centimetre off misfits as well, though its walls face as they should.
+// Four pieces that face sideways then still tell the position along the wall.
+TEST(SurfelMatcher, AMapThatIsOffStillTellsThePositionAlongAWall) {
+  RandomStream random(7, RandomStage::kTest);
+  constexpr double kOffSigmas = 6.0;
+  constexpr double kSigmaM = 1e-3;
+  const auto seen = [](Eigen::Vector2d point_m, Eigen::Vector2d normal) {
+    Surfel surfel;
+    surfel.point_m = point_m;
+    surfel.normal = normal;
+    surfel.information = 1.0 / (kSigmaM * kSigmaM);
+    surfel.normal_information = 1.0 / (0.03 * 0.03);
+    return surfel;
+  };
+  std::vector<Surfel> scan;
+  for (int i = 0; i < 100; ++i) scan.push_back(seen({2.0, 0.05 * i - 2.5}, {-1.0, 0.0}));
+  for (int i = 0; i < 4; ++i) scan.push_back(seen({1.5 + 0.1 * i, 2.5}, {0.0, -1.0}));
+  std::vector<Surfel> drawn = scan;
+  for (Surfel& surfel : drawn) {
+    surfel.point_m += kOffSigmas * kSigmaM * random.Normal() * surfel.normal;
+  }
+  const SurfelStore map = MapOfPieces(drawn);
+  Prediction prediction;
+  prediction.covariance = Eigen::Vector3d(1e-2, 1e-2, 1e-4).asDiagonal();
+  SurfelMatcher matcher({});
+  const MatchResult match = matcher.Match(scan, map, prediction);
+  ASSERT_TRUE(match.found);
+  // Within a factor of two of four pieces six sigmas off.
+  EXPECT_GT(match.information(1, 1), 0.5 * 4.0 * 0.5 / (36.0 * kSigmaM * kSigmaM));
+  // What errs so by noise has normals that err by as much more, and hundred of them feign it all.
+  matcher.SetBeamsErrAlike(true);
+  EXPECT_LT(matcher.Match(scan, map, prediction).information(1, 1), 0.5 * match.information(1, 1));
 }
 
 // Far from the minimum all residuals are large, and none of that is misfit.
