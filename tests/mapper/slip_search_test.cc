@@ -239,5 +239,19 @@ TEST(SlipSearch, WhatHasStoodForLongMustWantTheHeading) {
   EXPECT_FALSE(IsFound(aside, less));
 }
 
+// A wall that has just come into view explains any pose near those its first scans are drawn at.
+TEST(SlipSearch, WhereHardlyAnythingHasStoodForLongOnlyATurnIsASlip) {
+  const Pose2 turn{0.002, 0.001, RadFromDeg(5.0)}, aside{0.06, 0.0, RadFromDeg(1.0)};
+  const FakeMap::Lasting nothing{}, two{.last = 0.03, .predicted = 0.03, .elsewhere = 0.03},
+      four{.last = 0.07, .predicted = 0.07, .elsewhere = 0.07};  // of 60 surfels
+  for (const FakeMap::Lasting& lasting : {nothing, two, four}) {
+    EXPECT_TRUE(IsFound(turn, lasting));
+    EXPECT_TRUE(IsFound(Pose2{0.06, 0.0, RadFromDeg(5.0)}, lasting));
+  }
+  EXPECT_FALSE(IsFound(aside, nothing));
+  EXPECT_FALSE(IsFound(aside, two));
+  EXPECT_TRUE(IsFound(aside, four));
+}
+
 }  // namespace
 }  // namespace depthgrid
