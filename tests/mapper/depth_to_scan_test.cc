@@ -77,8 +77,8 @@ TEST(DepthToScan, NoBeamIsEmptyWhenLevel) {
               67.25 * 639.0 / 640.0, 0.01);
 }
 
-// Four beams a pixel: those in the outer half of an outer pixel have no depth of their own, and with
-// that of its centre the wall would bend there by 2 cm.
+// Four beams a pixel: those in the outer half of an outer pixel have no depth of their own, and
+// with that of its centre the wall would bend there by 2 cm.
 TEST(DepthToScan, AWallThatRecedesDoesNotBendAtTheImagesEdge) {
   const AnalyticRoom room;
   const PinholeCamera camera{160, 120, 120.0, 120.0, 79.5, 59.5, {}};
