@@ -282,7 +282,7 @@ void AddCompare(Program& program) {
                   "A score by its path in metrics.json (repeat for more), or all")
       ->type_name("NAME")
       ->allow_extra_args(false);
-  add_where("--where", arguments->where, "Only runs with this value of an axis");
+  add_where("--where", arguments->where, "Only runs with this value of an axis (repeat for more)");
   add_where("--where-a", arguments->where_a, "Likewise, for A alone");
   add_where("--where-b", arguments->where_b, "Likewise, for B alone");
   app->add_flag("--json", arguments->json, "Print JSON instead of a table");

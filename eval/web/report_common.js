@@ -191,6 +191,8 @@ function drawIntervals(u, series) {
   });
 }
 
+// Range that goes no farther than `within`: single values beyond leave the plot, so that all others can be told apart.
+const rangeWithin = ([least, most]) => (u, low, high) => uPlot.rangeNum(Math.min(Math.max(low ?? 0, least), most), Math.max(Math.min(high ?? 1, most), least), 0.1, true);
 // Range of a logarithmic axis that begins at `least`; smaller values are not shown.
 const rangeFrom = (least) => (u, low, high) => uPlot.rangeLog(least, Math.max(high ?? 0, 10 * least), 10, true);
 
@@ -264,9 +266,9 @@ const logLabels = (u, ticks) => ticks.map((v) => (v === null ? null : compact(v)
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash, digits, unit,
 // points, weights (of points; weighedBy: what they are), notes (behind the values), low, high (ends of intervals)}.
 // Lines stop where a value is null. Plots of one `sync` key share their cursor. `caption`: what a file says besides the
-// title. `xNames` replaces the numbers of the x axis, one a value of x. `leastY`: where an axis of `logY` begins.
+// title. `xNames` replaces the numbers of the x axis, one a value of x. `leastY`: where an axis of `logY` begins; `withinY`: as far as the y axis goes at most.
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
-function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY, leastY }) {
+function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY, leastY, withinY }) {
   const help = `${title}. Arrow keys move the cursor, plus and minus zoom, 0 shows everything.`;
   const save = saveButtons(title, { ...pictureKinds(() => plotSvg(plot, options, caption ? `${title} (${caption})` : title, series, xLabel, yLabel)), CSV: () => csvOfPlot(x, series, xLabel, xNames) });
   const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title, save));
@@ -286,7 +288,7 @@ function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height
     return {
       ...size,
       cursor: sync ? { y: false, sync: { key: sync } } : { y: false },
-      scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: { distr: logY ? 3 : 1, ...(series.some((s) => s.low) ? { range: rangeWithIntervals(series, logY) } : leastY ? { range: rangeFrom(leastY) } : {}) } },
+      scales: { x: { time: false, distr: logX ? 3 : 1, range: series.some((s) => s.points) ? roomAround : undefined }, y: { distr: logY ? 3 : 1, ...(series.some((s) => s.low) ? { range: rangeWithIntervals(series, logY) } : leastY ? { range: rangeFrom(leastY) } : withinY ? { range: rangeWithin(withinY) } : {}) } },
       axes: [
         { ...axis, label: xLabel, labelSize: 20, labelGap: 0, size: 34,
           ...(xNames ? { splits: () => x, values: (u) => xNames.map((name) => shortened(name, Math.floor(u.bbox.width / devicePixelRatio / xNames.length / TEXT_WIDTH))) } : {}),

@@ -25,8 +25,10 @@ namespace fs = std::filesystem;
 // A given axis farther than this from the floor's normal is wrong: axes are 90 degrees apart, and
 // an oblique world has no nearest one.
 const double kSureOfAxis = std::cos(RadFromDeg(45.0));
-// Tolerance for the opposite of the given axis: SLAM's tilt and errors of normals.
-const double kSureOfOpposite = std::cos(RadFromDeg(5.0));
+// Up this near to the opposite of an axis is its opposite: SLAM's tilt, errors of normals, and what
+// poses of another world make of the floor. Where the world is the first camera's, -z is up for one
+// that looks straight down.
+const double kSureOfOpposite = std::cos(RadFromDeg(30.0));
 // A floor this near to zero is set to zero, where ground truth has it; estimates scatter by
 // centimetres.
 constexpr double kFloorIsZeroM = 0.02;
@@ -115,12 +117,11 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
       fmt::format("the camera is {:.2f} m above the floor, the floor at z = {:.2f}",
                   gravity->camera_height_m, *result.floor_z_m));
   if (-up.z() > kSureOfOpposite) {
-    sequence.recording.warnings.push_back(
-        path +
-        ": up is -z, right if z of the poses' world points down (--up -z says so); if the camera "
-        "is "
-        "mounted upside down, the ceiling is taken for the floor and the map is mirrored, and --up "
-        "z is right");
+    sequence.recording.warnings.push_back(fmt::format(
+        "{}: up is {}, right if z of the poses' world points down (--up -z says so); if the camera "
+        "is mounted upside down, the ceiling is taken for the floor and the map is mirrored, and "
+        "--up z is right; poses of a left-handed world have no right axis",
+        path, ShownUp(up)));
   }
   if (gravity->floor_is_late) {
     sequence.recording.warnings.push_back(path +

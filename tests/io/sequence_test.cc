@@ -169,8 +169,8 @@ TEST_F(SequenceTest, AnAxisThatTheFloorSpeaksAgainstIsDoubted) {
 // A camera mounted upside down, or a world whose z points down: the images show the same.
 TEST_F(SequenceTest, UpOppositeToZIsWarnedOf) {
   const Trajectory truth = WriteRoom();
-  const auto warnings_of = [&](const Eigen::Vector3d& half_turn, WorldUp up) {
-    const Pose3 turned{Eigen::Quaterniond(Eigen::AngleAxisd(kPi, half_turn)),
+  const auto warnings_of = [&](const Eigen::Vector3d& axis, WorldUp up, double turn_rad = kPi) {
+    const Pose3 turned{Eigen::Quaterniond(Eigen::AngleAxisd(turn_rad, axis)),
                        Eigen::Vector3d::Zero()};
     SequenceOptions options;
     options.world_up = up;
@@ -183,6 +183,9 @@ TEST_F(SequenceTest, UpOppositeToZIsWarnedOf) {
   EXPECT_THAT(warnings_of(Eigen::Vector3d::UnitX(), WorldUp::kAuto), says);
   EXPECT_THAT(warnings_of(Eigen::Vector3d::UnitX(), WorldUp::kMinusZ), testing::Not(says));
   EXPECT_THAT(warnings_of(Eigen::Vector3d::UnitZ(), WorldUp::kAuto), testing::Not(says));
+  // As what poses of a left-handed world make of the floor.
+  EXPECT_THAT(warnings_of(Eigen::Vector3d::UnitX(), WorldUp::kAuto, kPi - 0.3),
+              Contains(testing::AllOf(HasSubstr(": up is ("), HasSubstr("left-handed world"))));
   const Pose3 first = Inverse(truth.front().world_from_camera);  // y down, z forward
   const Sequence camera_axes = OpenSequence(folder_, {}, SlamOutputOf(Turned(truth, first)));
   EXPECT_THAT(camera_axes.source->Warnings(), testing::IsEmpty());
