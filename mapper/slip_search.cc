@@ -150,8 +150,8 @@ std::optional<Pose2> SlipSearch::Find(const std::shared_ptr<const Scan>& scan,
   const double there = reference.ShareSeenBefore(lasting, found, before);
   const Pose2 slip = Between(prediction.map_from_base, found);
   const bool in_place = slip.translation().norm() < kInPlaceM;
-  const bool has_turned = in_place || std::abs(slip.yaw_rad) >= kTurnedRad;
-  if (!has_turned && last * best->explained < kFewestLasting) return {};
+  const bool is_turn = in_place || std::abs(slip.yaw_rad) >= kTurnedRad;
+  if (!is_turn && last * best->explained < kFewestLasting) return {};
   // Standard deviation of the share with so few surfels.
   const double scatter = std::sqrt(last * (1.0 - last) / best->explained);
   if (there >= kMendedShare * last - scatter) return found;

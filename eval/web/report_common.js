@@ -266,7 +266,8 @@ const logLabels = (u, ticks) => ticks.map((v) => (v === null ? null : compact(v)
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash, digits, unit,
 // points, weights (of points; weighedBy: what they are), notes (behind the values), low, high (ends of intervals)}.
 // Lines stop where a value is null. Plots of one `sync` key share their cursor. `caption`: what a file says besides the
-// title. `xNames` replaces the numbers of the x axis, one a value of x. `leastY`: where an axis of `logY` begins; `withinY`: as far as the y axis goes at most.
+// title. `xNames` replaces the numbers of the x axis, one a value of x. `leastY`: where an axis of `logY` begins.
+// `withinY`: the ends beyond which a y axis does not go.
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
 function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY, leastY, withinY }) {
   const help = `${title}. Arrow keys move the cursor, plus and minus zoom, 0 shows everything.`;

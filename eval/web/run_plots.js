@@ -4,8 +4,6 @@
 // null if there is nothing to draw.
 const scaled = (values, factor) => values.map((v) => (v === null ? null : v * factor));
 const hasColumn = (column) => Boolean(frames[column]) && frames[column].some((v) => v !== null);
-// Where axes are known together, as beside a wall at a slant, one entry of K may be far outside 0 to 1.
-const GAINS = [-1, 2];
 const times = frames.stamp_s.map((t) => t - frames.stamp_s[0]);
 
 function addPlot(container, title, yLabel, series, more = {}) {
@@ -22,6 +20,7 @@ function initPlots() {
   const add = (title, yLabel, series, more) => addPlot(byId("plots"), title, yLabel, series, more);
   const column = (label, name, tone, factor, digits, unit) => ({ label, values: scaled(frames[name], factor), colour: tone, digits, unit });
   const degree = 180 / Math.PI;
+  const gainsShown = [-1, 2];  // before a wall at a slant single entries of K are far outside 0 to 1 and would flatten all others
   if (hasColumn("slam_error_m")) {
     add("Distance from the truth, in the plane", "cm", [
       column("SLAM", "slam_error_m", "slam", 100, 2, "cm"),
@@ -39,7 +38,7 @@ function initPlots() {
       column("forward", "gain_forward", "est", 1, 3),
       column("left", "gain_left", "slam", 1, 3),
       column("yaw", "gain_yaw", "truth", 1, 3),
-    ].map((s, k) => ({ ...s, width: [4.2, 2.9, 1.6][k] })), { withinY: GAINS });  // those beneath show on both sides where axes have one gain
+    ].map((s, k) => ({ ...s, width: [4.2, 2.9, 1.6][k] })), { withinY: gainsShown });  // those beneath show on both sides where axes have one gain
   }
   if (hasColumn("match_score")) add("Match score: share of the beams that the map explains", "share", [column("score", "match_score", "est", 1, 3)]);
   if (hasColumn("beams")) add("Beams with a hit", "beams", [{ ...column("beams", "beams", "est", 1, 0), values: whereMapped(frames.beams) }]);

@@ -189,7 +189,7 @@ function drawBest() {
   const regretAt = (line, value) => line.regret_of_seed[line.points.findIndex((i) => place(i) === value)] ?? null;
   const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
   drawPlot(byId("regret"), {
-    title: `Regret along ${axis.key}: mean loss against ${oraclesOf(some)}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}${some.length < shown.length ? `; ${some.length} of the ${shown.length} rows above` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
+    title: `Regret along ${axis.key}: mean loss against ${oraclesOf(some)}${some.length < shown.length ? ` (${some.length} of the ${shown.length} rows above)` : ""}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
     logX: along.logX && axis.numbers.every((v) => v > 0),
     series: some.map((line, k) => ({ label: heldText(line), values: places.map((value) => regretAt(line, value)).map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true, spanGaps: true,
       width: 1.6 + 0.9 * (some.length - 1 - k) })),  // those beneath show on both sides where many lie at 0

@@ -25,9 +25,9 @@ namespace fs = std::filesystem;
 // A given axis farther than this from the floor's normal is wrong: axes are 90 degrees apart, and
 // an oblique world has no nearest one.
 const double kSureOfAxis = std::cos(RadFromDeg(45.0));
-// Up this near to the opposite of an axis is its opposite: SLAM's tilt, errors of normals, and what
-// poses of another world make of the floor. Where the world is the first camera's, -z is up for one
-// that looks straight down.
+// Tolerance for the opposite of an axis: SLAM's tilt, errors of normals, and what poses of a
+// left-handed world make of the floor (15 degrees were seen). Not more, as up comes near to -z also
+// in the axes of a first camera that looks down steeply. Chosen.
 const double kSureOfOpposite = std::cos(RadFromDeg(30.0));
 // A floor this near to zero is set to zero, where ground truth has it; estimates scatter by
 // centimetres.

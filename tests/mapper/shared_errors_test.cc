@@ -148,7 +148,7 @@ TEST(SurfelMatcher, NoiseBeyondWhatIsClaimedTellsNothingAlongAWall) {
   }
 }
 
-// A map drawn at poses a centimetre off misfits as well, though its walls face as they should.
+// A map drawn at poses some millimetres off misfits as well, though its walls face as they should.
 // Four pieces that face sideways then still tell the position along the wall.
 TEST(SurfelMatcher, AMapThatIsOffStillTellsThePositionAlongAWall) {
   RandomStream random(7, RandomStage::kTest);
@@ -175,9 +175,9 @@ TEST(SurfelMatcher, AMapThatIsOffStillTellsThePositionAlongAWall) {
   SurfelMatcher matcher({});
   const MatchResult match = matcher.Match(scan, map, prediction);
   ASSERT_TRUE(match.found);
-  // Within a factor of two of four pieces six sigmas off.
+  // A quarter of what four pieces six sigmas off would tell, or more.
   EXPECT_GT(match.information(1, 1), 0.5 * 4.0 * 0.5 / (36.0 * kSigmaM * kSigmaM));
-  // What errs so by noise has normals that err by as much more, and hundred of them feign it all.
+  // What errs so by noise has normals that err by as much more, and a hundred of them feign most of it.
   matcher.SetBeamsErrAlike(true);
   EXPECT_LT(matcher.Match(scan, map, prediction).information(1, 1), 0.5 * match.information(1, 1));
 }
