@@ -177,7 +177,7 @@ TEST(SurfelMatcher, AMapThatIsOffStillTellsThePositionAlongAWall) {
   ASSERT_TRUE(match.found);
   // A quarter of what four pieces six sigmas off would tell, or more.
   EXPECT_GT(match.information(1, 1), 0.5 * 4.0 * 0.5 / (36.0 * kSigmaM * kSigmaM));
-  // What errs so by noise has normals that err by as much more, and a hundred of them feign most of it.
+  // What errs so by noise has normals that err by as much more, and a hundred of them feign most.
   matcher.SetBeamsErrAlike(true);
   EXPECT_LT(matcher.Match(scan, map, prediction).information(1, 1), 0.5 * match.information(1, 1));
 }
