@@ -14,6 +14,7 @@
 #include "bench/command_line.h"
 #include "bench/guarded_main.h"
 #include "bench/mapper_settings.h"
+#include "eval/doubts/agreement_check.h"
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/run/consistency.h"
@@ -99,6 +100,7 @@ struct Experiment {
 struct Run {
   Errors prior, online, final;
   std::vector<ChiSquareSample> nis, nees;
+  Agreement agreement;
   double frame_us = 0.0, finish_us = 0.0, match_us = 0.0, insert_us = 0.0;  // means over the frames
 };
 
@@ -139,6 +141,7 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Experime
   const double start_us = ThreadCpuUs();
   const MapperResult result = mapper.Finish();
   run.finish_us = (ThreadCpuUs() - start_us) / frames;
+  run.agreement = AgreementOf(result).value_or(Agreement{});
   for (const auto& pose : result.map_from_camera) final.push_back(BaseOf(*pose));
   run.nis = InnovationSamples(reports);
   run.nees = MotionSamples(reports, stamped_truth);
@@ -168,10 +171,10 @@ std::vector<Run> MapAll(const LaserWorld& world, const std::vector<Pose2>& truth
 void PrintRun(const std::string& world, int seed, const Run& run) {
   std::printf(
       "%-10s seed %2d prior %.3f/%.3f online %.4f/%.4f max %.3f final %.4f/%.4f max %.3f | us "
-      "frame %.0f match %.0f insert %.0f finish %.0f\n",
+      "frame %.0f match %.0f insert %.0f finish %.0f | beams through walls %.4f\n",
       world.c_str(), seed, run.prior.mean, run.prior.ate, run.online.mean, run.online.ate,
       run.online.max, run.final.mean, run.final.ate, run.final.max, run.frame_us, run.match_us,
-      run.insert_us, run.finish_us);
+      run.insert_us, run.finish_us, run.agreement.crossing_share);
 }
 
 void PrintMeans(const std::string& world, const std::vector<Run>& runs) {

@@ -13,6 +13,7 @@
 #include "eval/cli/map_settings.h"
 #include "eval/cli/pose_doubt_text.h"
 #include "eval/cli/video_output.h"
+#include "eval/doubts/agreement_check.h"
 #include "eval/doubts/floor_check.h"
 #include "eval/doubts/mount_check.h"
 #include "eval/doubts/view_check.h"
@@ -259,7 +260,7 @@ void CheckMatches(const MapArguments& arguments, const MapSettings& settings, co
   warnings.push_back(arguments.input + ": no scan could be matched, the poses are those given");
 }
 
-void SayResult(const MappingRun& run, bool localised) {
+void SayResult(const MappingRun& run, bool localised, const std::optional<Agreement>& agreement) {
   int posed = 0, well_seen = 0;
   for (const FrameReport& report : run.reports) {
     posed += report.slam_from_camera ? 1 : 0;
@@ -290,6 +291,9 @@ void SayResult(const MappingRun& run, bool localised) {
     fmt::print("; {} of {} taken", taken, Counted(run.loops.size(), "loop closure"));
   }
   if (found > 0) fmt::print("; {} found", Counted(found, "loop closure"));
+  if (agreement) {
+    fmt::print("; {:.1f} % of the beams lead through its walls", 100.0 * agreement->crossing_share);
+  }
   fmt::print("\n");
 }
 
@@ -354,6 +358,10 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   bar.Say("writing the map and the report");
   const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
+  const auto agreement = AgreementOf(run.result);
+  if (const auto doubt = agreement ? DoubtOfAgreement(*agreement) : std::nullopt) {
+    warnings.push_back(arguments.input + ": " + *doubt);
+  }
   if (arguments.localise) {
     const std::vector<std::string> of_map = DoubtsOfKeptMap(request, run.result.map);
     warnings.insert(warnings.end(), of_map.begin(), of_map.end());
@@ -372,7 +380,7 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   NoteResult("the map is in " + arguments.common.output);
   WriteVideo(arguments.output, arguments.common, run, settings.mapper.grid);
   bar.Clear();
-  SayResult(run, arguments.localise);
+  SayResult(run, arguments.localise, agreement);
   SayReport(arguments.common.output);
   std::fflush(stdout);
   Warn(warnings);

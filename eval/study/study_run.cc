@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "eval/doubts/agreement_check.h"
 #include "eval/doubts/truth_check.h"
 #include "eval/doubts/view_check.h"
 #include "eval/output/run_folder.h"
@@ -61,8 +62,9 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
   OutputFolder folder(study_folder.File(study_case.name), false);
   RunRecord record =
       RecordOf(run.options, joint.world, run.slam, run.mapping, joint.truth, run.scores);
-  for (const auto& doubt : {DoubtOfView(run.mapping, run.options),
-                            DoubtOfTruth(joint.world, joint.truth, run.options)}) {
+  for (const auto& doubt :
+       {DoubtOfView(run.mapping, run.options), DoubtOfAgreement(run.mapping.result),
+        DoubtOfTruth(joint.world, joint.truth, run.options)}) {
     if (doubt) record.warnings.push_back(*doubt);
   }
   record.map_mode = map_mode;

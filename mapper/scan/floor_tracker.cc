@@ -43,15 +43,19 @@ CameraStand FloorTracker::StandOver(const Floor& floor, const Pose3& slam_from_c
   return {LevelFromCamera(turned), floor.up.dot(slam_from_camera.translation) + floor.offset_m};
 }
 
+bool FloorTracker::IsExpected(double height_m, double expected_m, double near_m) const {
+  return std::abs(height_m - expected_m) <= near_m ||
+         (floor_height_m_ && std::abs(height_m - *floor_height_m_) <= kNearM);
+}
+
 bool FloorTracker::AcceptOrCount(double height_m, double expected_m) {
   const bool pose_is_height = expected_m > kLeastPoseHeightM && expected_m < kMostPoseHeightM;
   if (!seen_ && !pose_is_height) return true;
-  const double higher_m = height_m - expected_m;
-  const double near_m = seen_ ? kNearM : kNearPoseM;
-  if (std::abs(higher_m) <= near_m) {
+  if (IsExpected(height_m, expected_m, seen_ ? kNearM : kNearPoseM)) {
     other_frames_ = 0;
     return true;
   }
+  const double higher_m = height_m - expected_m;
   if (std::abs(higher_m - other_higher_m_) > kNearM) other_frames_ = 0;
   other_higher_m_ = higher_m;
   ++other_frames_;
@@ -79,19 +83,31 @@ CameraStand FloorTracker::Follow(const DepthImage& image, const Pose3& slam_from
   return stand;
 }
 
+std::optional<FloorPlane> FloorTracker::TiltedFloor(const FloorPrior& prior, double expected_m) {
+  if (!seen_ || std::abs(prior.height_m - expected_m) > kNearPoseM) return {};
+  const std::optional<FloorPlane> plane = FitFloor(memory_, prior);
+  if (!plane || !IsExpected(plane->height_m, expected_m, kNearM)) return {};
+  other_frames_ = 0;
+  return plane;
+}
+
 void FloorTracker::LookAt(const DepthImage& image, const Pose3& slam_from_camera) {
   const CameraStand expected = StandOver(floor_, slam_from_camera);
   memory_ = LevelPointsOf(image, camera_, expected.level_from_camera, std::move(memory_));
   const std::optional<double> height_m = LowestSurface(memory_);
-  if (!height_m || !AcceptOrCount(*height_m, expected.height_m)) return;
-  FloorPrior prior{expected.height_m, kStepSigmaM, kStepSigmaRad};
-  if (!seen_ || std::abs(*height_m - expected.height_m) > kNearM) {
-    prior = {*height_m, kFirstSigmaM, kFirstSigmaRad};
-  }
-  std::optional<FloorPlane> plane = FitFloor(memory_, prior);
-  if (++looks_ % kFramesToLookAnew == 0) {
-    const auto anew = FitFloor(memory_, {*height_m, kFirstSigmaM, kFirstSigmaRad});
-    if (anew && (!plane || anew->points > kMorePoints * plane->points)) plane = anew;
+  if (!height_m) return;
+  const FloorPrior wide{*height_m, kFirstSigmaM, kFirstSigmaRad};
+  std::optional<FloorPlane> plane;
+  if (!AcceptOrCount(*height_m, expected.height_m)) {
+    plane = TiltedFloor(wide, expected.height_m);
+  } else if (!seen_ || std::abs(*height_m - expected.height_m) > kNearM) {
+    plane = FitFloor(memory_, wide);
+  } else {
+    plane = FitFloor(memory_, {expected.height_m, kStepSigmaM, kStepSigmaRad});
+    if (++looks_ % kFramesToLookAnew == 0) {
+      const auto anew = FitFloor(memory_, wide);
+      if (anew && (!plane || anew->points > kMorePoints * plane->points)) plane = anew;
+    }
   }
   if (!plane) return;
   const Eigen::Quaterniond slam_from_level =

@@ -31,8 +31,14 @@ class FloorTracker {
     double offset_m = 0.0;
   };
   CameraStand StandOver(const Floor& floor, const Pose3& slam_from_camera) const;
+  // The plane of a surface at an unexpected height, if only SLAM's tilt made it one: with the tilt
+  // that it shows, the camera is as high above it as expected.
+  std::optional<FloorPlane> TiltedFloor(const FloorPrior& prior, double expected_m);
   // Updates floor_ from the image.
   void LookAt(const DepthImage& image, const Pose3& slam_from_camera);
+  // Whether a surface at this height is the floor: as far below the camera as expected, or as when
+  // it was seen last, whatever height SLAM has drifted to meanwhile.
+  bool IsExpected(double height_m, double expected_m, double near_m) const;
   // Whether a surface at this height is accepted as the floor; counts how often one was seen at an
   // unexpected height.
   bool AcceptOrCount(double height_m, double expected_m);

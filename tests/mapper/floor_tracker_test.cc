@@ -97,6 +97,34 @@ TEST(FloorTracker, AFloorThatIsLostFromViewIsCarriedOn) {
               kCameraHeightM + 0.05, 0.005);
 }
 
+// A second in which the camera looks up and SLAM drifts in height or tilt by more than a surface
+// may be off to be the floor: when the floor comes back, it is not an obstacle for the next two
+// seconds.
+TEST(FloorTracker, WhatSlamDriftsMeanwhileIsMadeGoodAtOnce) {
+  const PinholeCamera camera = SmallCamera();
+  const Pose3 down = TiltedCamera({}, kCameraHeightM, RadFromDeg(5.0), 0.0);
+  const Pose3 up = TiltedCamera({}, kCameraHeightM, RadFromDeg(-30.0), 0.0);
+  const DepthImage floor = RoomWithTable().Render(camera, down);
+  const DepthImage ceiling = RoomWithTable().Render(camera, up);
+  struct Drift {
+    double height_m, tilt_deg;
+  };
+  for (const Drift& drift : {Drift{0.25, 0.0}, {-0.25, 0.0}, {0.02, 4.0}, {0.02, -3.0}}) {
+    FloorTracker tracker(camera, {});
+    const auto drifted = [&](Pose3 pose, double share) {
+      pose.translation.z() += drift.height_m * share;
+      const Eigen::Vector3d turn(0.0, RadFromDeg(drift.tilt_deg) * share, 0.0);
+      pose.rotation = ExpRotation(turn) * pose.rotation;
+      return pose;
+    };
+    tracker.Follow(floor, down, 0);
+    for (int frame = 1; frame <= 30; ++frame) tracker.Follow(ceiling, drifted(up, frame / 30.0), 0);
+    const CameraStand stand = tracker.Follow(floor, drifted(down, 1.0), 0);
+    EXPECT_NEAR(stand.height_m, kCameraHeightM, 0.02) << drift.height_m << " " << drift.tilt_deg;
+    EXPECT_LT(TiltErrorDeg(stand, down), 1.0) << drift.height_m << " " << drift.tilt_deg;
+  }
+}
+
 TEST(FloorTracker, ATableThatHidesTheFloorIsNotTheFloor) {
   const PinholeCamera camera = SmallCamera();
   FloorTracker tracker(camera, {});

@@ -1,0 +1,122 @@
+#include "eval/doubts/agreement_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "mapper/core/angle.h"
+#include "mapper/core/rng.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr double kWallM = 2.02;  // the wall ahead: x of its face
+
+// 161 beams over 80 degrees towards a wall at x = `wall_m`, with noise as a share of the range.
+Scan ScanOfWall(double wall_m, double noise_share = 0.0, int seed = 1) {
+  RandomStream random(static_cast<std::uint64_t>(seed), RandomStage::kTest);
+  Scan scan;
+  scan.max_range_m = 6.0;
+  for (int i = -80; i <= 80; ++i) {
+    const double bearing_rad = RadFromDeg(0.5 * i);
+    const double range_m = wall_m / std::cos(bearing_rad) * (1.0 + noise_share * random.Normal());
+    Beam beam;
+    beam.bearing_rad = static_cast<float>(bearing_rad);
+    beam.range_m = beam.clear_to_m = static_cast<float>(range_m);
+    beam.hit = true;
+    scan.beams.push_back(beam);
+  }
+  return scan;
+}
+
+// Free from x = 0 on, with walls along y in the cells that these x lie in.
+OccupancyMap MapWithWalls(const std::vector<double>& walls_m) {
+  OccupancyMap map({0.05, {-10, -60}, 80, 120});
+  std::fill(map.occupied_prob.begin(), map.occupied_prob.end(), 0.1F);
+  for (const double x_m : walls_m) {
+    for (int y = -60; y < 60; ++y) {
+      map.occupied_prob[map.geometry.Index({CellIndex(x_m, 0.05), y})] = 0.9F;
+    }
+  }
+  return map;
+}
+
+MapperResult ResultOf(const std::vector<Scan>& scans, const OccupancyMap& map) {
+  MapperResult result;
+  ScanArchive archive;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    MappedFrame frame;
+    frame.frame = static_cast<int>(10 + i);
+    frame.scan = frame.obstacles = archive.Keep(scans[i]);
+    result.mapped.push_back(frame);
+  }
+  result.map = map;
+  return result;
+}
+
+double ShareOf(const MapperResult& result) { return AgreementOf(result)->crossing_share; }
+
+TEST(Agreement, OfScansWithTheirOwnWallIsWhole) {
+  const auto agreement = AgreementOf(ResultOf({ScanOfWall(kWallM)}, MapWithWalls({kWallM})));
+  ASSERT_TRUE(agreement.has_value());
+  EXPECT_EQ(agreement->beams, 80);  // every second one, as there are more than 160
+  EXPECT_EQ(agreement->crossing_share, 0.0);
+  EXPECT_FALSE(agreement->worst_frame.has_value());
+  EXPECT_FALSE(DoubtOfAgreement(*agreement).has_value());
+}
+
+TEST(Agreement, AWallDrawnTwiceIsCrossedByTheScansOfTheFartherOne) {
+  const OccupancyMap twice = MapWithWalls({kWallM - 0.3, kWallM});
+  const std::vector<Scan> scans = {ScanOfWall(kWallM - 0.3), ScanOfWall(kWallM),
+                                   ScanOfWall(kWallM - 0.3)};
+  const auto agreement = AgreementOf(ResultOf(scans, twice));
+  ASSERT_TRUE(agreement.has_value());
+  EXPECT_NEAR(agreement->crossing_share, 1.0 / 3.0, 0.01);
+  EXPECT_EQ(agreement->worst_frame, 11);
+  const auto doubt = DoubtOfAgreement(*agreement);
+  ASSERT_TRUE(doubt.has_value());
+  EXPECT_NE(doubt->find("33.3 % of the beams"), std::string::npos) << *doubt;
+  EXPECT_NE(doubt->find("around frame 11)"), std::string::npos) << *doubt;
+  // Two cells are within the tolerance.
+  EXPECT_EQ(ShareOf(ResultOf({ScanOfWall(kWallM)}, MapWithWalls({kWallM - 0.05, kWallM}))), 0.0);
+}
+
+TEST(Agreement, NoiseOfTheBeamsIsNoContradiction) {
+  for (const double noise_share : {0.01, 0.03, 0.1}) {
+    std::vector<Scan> scans;
+    for (int seed = 1; seed <= 20; ++seed) {
+      scans.push_back(ScanOfWall(kWallM, noise_share, seed));
+    }
+    EXPECT_LT(ShareOf(ResultOf(scans, MapWithWalls({kWallM}))), 0.005) << noise_share;
+  }
+}
+
+TEST(Agreement, SingleWrongReadingsAreNone) {
+  Scan scan = ScanOfWall(kWallM);
+  for (std::size_t i = 0; i < scan.beams.size(); i += 5) {
+    scan.beams[i].range_m = scan.beams[i].clear_to_m = 3.0F;
+  }
+  EXPECT_EQ(ShareOf(ResultOf({scan}, MapWithWalls({kWallM}))), 0.0);
+}
+
+// A depth camera that looks over a chest in front of it knows nothing of the way below the image.
+TEST(Agreement, OnlyWhereTheBeamSaysThatTheWayIsFree) {
+  Scan scan = ScanOfWall(kWallM);
+  for (Beam& beam : scan.beams) beam.clear_from_m = 1.0F / std::cos(beam.bearing_rad);
+  EXPECT_EQ(ShareOf(ResultOf({scan}, MapWithWalls({0.8, kWallM}))), 0.0);
+  EXPECT_EQ(ShareOf(ResultOf({scan}, MapWithWalls({1.3, kWallM}))), 1.0);
+}
+
+TEST(Agreement, IsOfTheRunsOwnKeptScans) {
+  MapperResult result = ResultOf({ScanOfWall(kWallM), ScanOfWall(kWallM)}, MapWithWalls({1.5}));
+  EXPECT_EQ(ShareOf(result), 1.0);
+  result.mapped[0].frame = -1;  // of the map that it went on in
+  result.mapped[1].tied_to = 0;
+  EXPECT_FALSE(AgreementOf(result).has_value());
+  EXPECT_FALSE(DoubtOfAgreement(result).has_value());
+  EXPECT_FALSE(AgreementOf({}).has_value());
+  EXPECT_FALSE(AgreementOf(ResultOf({Scan{}}, OccupancyMap{})).has_value());
+}
+
+}  // namespace
+}  // namespace depthgrid
