@@ -281,9 +281,11 @@ def main():
                               cwd=folder, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             return refuse(done.stderr.strip())
-        of_seed = r"seed +(\d+) prior ([\d.]+)/\S+ online ([\d.]+)/\S+ max \S+ final ([\d.]+)/([\d.]+)"
-        for seed, prior, on, at_end, ate in re.findall(of_seed, done.stdout):
-            print(f"w{number}", *options, f"seed {seed} prior {prior} online {on} final {at_end} ate {ate}", flush=True)
+        of_seed = (r"seed +(\d+) prior ([\d.]+)/\S+ online ([\d.]+)/\S+ max \S+ final ([\d.]+)/([\d.]+) .*"
+                   r"through walls ([\d.]+)")
+        for seed, prior, on, at_end, ate, through in re.findall(of_seed, done.stdout):
+            print(f"w{number}", *options, f"seed {seed} prior {prior} online {on} final {at_end} ate {ate} beams through "
+                  f"walls {through}", flush=True)
             priors.append(float(prior))
             online.append(float(on))
             final.append(float(at_end))

@@ -108,6 +108,37 @@ std::string LagTable(const std::vector<LagError>& measured, const std::vector<La
   return Table(rows);
 }
 
+// A warning where the surrogate's errors differ by more than kPoorFactor from the run's, over the
+// lag where most. Longer lags, of which the run has few, differ by chance.
+std::vector<std::string> DoubtOfFit(const std::vector<LagError>& measured,
+                                    const std::vector<LagError>& imitated, double tracked_s,
+                                    const std::string& place) {
+  constexpr double kPoorFactor = 1.5;
+  constexpr double kFewestMotions = 20.0;
+  constexpr double kLeastM = 1e-3, kLeastDeg = 0.05;  // smaller errors are of no account
+  double worst = kPoorFactor;
+  std::string doubt;
+  const auto judge = [&](double run, double surrogate, double least, const LagError& lag,
+                         const std::string& what) {
+    const double more = std::max(run, least), less = std::max(surrogate, least);
+    if (std::max(more / less, less / more) <= worst) return;
+    worst = std::max(more / less, less / more);
+    doubt = fmt::format("{}: the settings below imitate this run badly: over {:.3g} s {}", place,
+                        lag.lag_s, what);
+  };
+  for (std::size_t i = 0; i < std::min(measured.size(), imitated.size()); ++i) {
+    const LagError &run = measured[i], &surrogate = imitated[i];
+    if (run.lag_s * kFewestMotions > tracked_s) break;
+    judge(run.translation_m, surrogate.translation_m, kLeastM, run,
+          fmt::format("they err by {:.1f} mm, the run by {:.1f} mm", 1e3 * surrogate.translation_m,
+                      1e3 * run.translation_m));
+    judge(run.rotation_deg, surrogate.rotation_deg, kLeastDeg, run,
+          fmt::format("they err by {:.2f} degrees, the run by {:.2f} degrees",
+                      surrogate.rotation_deg, run.rotation_deg));
+  }
+  return doubt.empty() ? std::vector<std::string>{} : std::vector<std::string>{doubt};
+}
+
 }  // namespace
 
 void FitSlam(const SlamFitArguments& arguments) {
@@ -135,8 +166,10 @@ void FitSlam(const SlamFitArguments& arguments) {
       Counted(fit.corrections, "correction"), 100.0 * fit.pivot_explains, kCheckSeeds,
       fit.corrections > 0 ? "every revisit is closed, as there are corrections"
                           : "none is closed, as there is no correction"));
-  PrintComments(LagTable(ErrorOverLag(AllBetweenCorrections(runs), Lags()),
-                         ErrorOverLag(Imitated(runs, fit.options), Lags())));
+  const auto measured = ErrorOverLag(AllBetweenCorrections(runs), Lags());
+  const auto imitated = ErrorOverLag(Imitated(runs, fit.options), Lags());
+  PrintComments(LagTable(measured, imitated));
+  Warn(DoubtOfFit(measured, imitated, fit.tracked_s, place));
   fmt::print("{}", ToYaml(SlamSettings{fit.options}));
 }
 

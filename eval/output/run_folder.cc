@@ -66,11 +66,6 @@ std::string Lines(const std::vector<std::string>& lines) {
 
 }  // namespace
 
-OccupancyMap MapToWrite(const OccupancyMap& map) {
-  if (map.geometry.size() > 0) return map;
-  return OccupancyMap(OnlyCell(map.geometry.min_cell, map.geometry.resolution_m));
-}
-
 std::string MetricsOf(const RunScores& scores) {
   return MetricsJson({{"slam", scores.slam}, {"online", scores.online}, {"est", scores.est}},
                      &scores.map, &scores.consistency);
@@ -112,7 +107,7 @@ void WriteRunFolder(const OutputFolder& folder, const RunRecord& record) {
   if (!record.map_hash.empty()) provenance += fmt::format("  map_hash: {}\n", record.map_hash);
   WriteFile(folder.File("run.yaml"), record.settings + provenance);
   WriteFile(folder.File("warnings.txt"), Lines(record.warnings));
-  WriteMap(folder.File("map.yaml"), MapToWrite(record.mapping->result.map), record.map_mode);
+  WriteMap(folder.File("map.yaml"), record.mapping->result.map, record.map_mode);
   WriteMapPicture(folder, record);
   WriteTrajectories(folder, record);
   if (record.truth != nullptr) WriteTruthMaps(folder.work().string(), *record.truth);

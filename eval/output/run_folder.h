@@ -31,9 +31,6 @@ struct RunRecord {
 RunRecord RecordOf(const ExperimentOptions& options, const World& world, const SlamOutput& slam,
                    const MappingRun& mapping, const TruthRecord& truth, const RunScores& scores);
 
-// The map to write; a single unknown cell if nothing was mapped.
-OccupancyMap MapToWrite(const OccupancyMap& map);
-
 // Writes every file into the folder's work area; the caller commits.
 void WriteRunFolder(const OutputFolder& folder, const RunRecord& record);
 

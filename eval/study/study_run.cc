@@ -70,7 +70,7 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
   record.map_mode = map_mode;
   record.wall_s_total = times.wall_s;
   record.cpu_s_total = times.cpu_s;
-  WriteMap(folder.File("input_map.yaml"), MapToWrite(input), map_mode);
+  WriteMap(folder.File("input_map.yaml"), input, map_mode);
   WriteRunFolder(folder, record);
   const auto no_colour = AddColour(folder.work().string(), record);
   folder.Commit();

@@ -244,9 +244,14 @@ std::string MapImageOf(const std::string& yaml_path, MapMode mode) {
   return fs::path(yaml_path).replace_extension(ending).string();
 }
 
+OccupancyMap MapToWrite(const OccupancyMap& map) {
+  if (map.geometry.size() > 0) return map;
+  return OccupancyMap(OnlyCell(map.geometry.min_cell, map.geometry.resolution_m));
+}
+
 void WriteMap(const std::string& yaml_path, const OccupancyMap& map, MapMode mode) {
-  Require(map.occupied_prob.size() == map.geometry.size() && map.geometry.size() > 0,
-          "a map to write has cells");
+  if (map.geometry.size() == 0) return WriteMap(yaml_path, MapToWrite(map), mode);
+  Require(map.occupied_prob.size() == map.geometry.size(), "a map has a value for each cell");
   const fs::path image_path = MapImageOf(yaml_path, mode);
   if (image_path == fs::path(yaml_path)) {
     throw InputError(yaml_path, "is the name that the map's image has, must be the YAML file's");

@@ -48,10 +48,13 @@ CellSet ReadFreeCells(const std::string& path);
 // .scale.png.
 std::string MapImageOf(const std::string& yaml_path, MapMode mode);
 
-// Writes a map of at least one cell: `yaml_path` and the image beside it (MapImageOf). In `trinary`
-// a cell is what StatesOf makes of it; the other modes keep probabilities, to 1/255 and 1 %.
-// Throws InputError when both files would have one name, std::runtime_error when they cannot be
-// written.
+// The map as it is written: itself, or a single unknown cell if it has none, as while nothing is
+// mapped (image files have no empty form).
+OccupancyMap MapToWrite(const OccupancyMap& map);
+
+// Writes MapToWrite(map): `yaml_path` and the image beside it (MapImageOf). In `trinary` a cell is
+// what StatesOf makes of it; the other modes keep probabilities, to 1/255 and 1 %. Throws
+// InputError when both files would have one name, std::runtime_error when they cannot be written.
 void WriteMap(const std::string& yaml_path, const OccupancyMap& map,
               MapMode mode = MapMode::kTrinary);
 void WriteMap(const std::string& yaml_path, const StateMap& map);

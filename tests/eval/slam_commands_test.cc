@@ -2,6 +2,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
+
+#include "mapper/core/angle.h"
 #include "mapper/io/trajectory_file.h"
 #include "tests/eval/program.h"
 
@@ -118,12 +121,30 @@ TEST_F(SlamCommands, FitFindsWhatSlamDid) {
   EXPECT_NEAR(value("jitter_translation_m"), 0.004, 0.0004);
   EXPECT_NEAR(value("jitter_rotation_deg"), 0.1, 0.015);
   EXPECT_NEAR(value("walk_translation_m"), 0.0, 0.001);
+  EXPECT_EQ(fit.err.find("badly"), std::string::npos) << fit.err;
   // It can be put into an experiment as it stands.
   Write("fitted.yaml", "scene: ./room.yaml\n" + fit.out);
   EXPECT_EQ(Program("run ./fitted.yaml -o fitted --set frames=2 --set sensor.width=80 --set "
                     "sensor.height=60")
                 .exit_code,
             0);
+}
+
+// Errors that swing once a second, which no walk, bias or drift does.
+TEST_F(SlamCommands, FitSaysWhereItImitatesARunBadly) {
+  std::string truth, swinging;
+  for (int i = 0; i < 1800; ++i) {
+    const double stamp_s = i / 30.0, x_m = 0.3 * stamp_s, y_m = std::sin(0.2 * stamp_s);
+    const double off_m = 0.05 * std::sin(RadFromDeg(360.0) * stamp_s) + 0.001 * (i % 3);
+    const char* pose = "{:.6f} {:.6f} {:.6f} 1 -0.5 0.5 -0.5 0.5\n";
+    truth += fmt::format(fmt::runtime(pose), stamp_s, x_m, y_m);
+    swinging += fmt::format(fmt::runtime(pose), stamp_s, x_m + off_m, y_m);
+  }
+  Write("truth.txt", truth);
+  Write("swinging.txt", swinging);
+  const Outcome fit = Program("slam-fit truth.txt swinging.txt");
+  ASSERT_EQ(fit.exit_code, 0) << fit.err;
+  EXPECT_THAT(fit.err, HasSubstr("swinging.txt: the settings below imitate this run badly: over "));
 }
 
 // Nothing errs, no loop is closed: neither does what imitates it.

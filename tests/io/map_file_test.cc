@@ -144,6 +144,16 @@ TEST_F(MapFileTest, TrinaryRoundTripKeepsTheStates) {
 }
 
 // In UTM coordinates a corner has seven digits before the point.
+// As a robot's before its first scan (IncrementalMapper::CurrentMap).
+TEST_F(MapFileTest, AMapWithoutCellsIsWrittenAsAnUnknownOne) {
+  for (const MapMode mode : {MapMode::kTrinary, MapMode::kScale, MapMode::kRaw}) {
+    const std::string path = Path("empty.yaml");
+    WriteMap(path, OccupancyMap{}, mode);
+    EXPECT_EQ(ReadMap(path).map.geometry, OnlyCell({0, 0}, 0.05));
+    EXPECT_EQ(ReadStates(path).states, std::vector<CellState>{kU});
+  }
+}
+
 TEST_F(MapFileTest, AMapFarFromItsOriginKeepsItsLattice) {
   OccupancyMap map = RandomMap();
   map.geometry.resolution_m = 0.025;
