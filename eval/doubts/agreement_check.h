@@ -12,17 +12,14 @@ namespace depthgrid {
 // Of a sample of the run's kept beams with a hit, laid into the map at the final poses.
 struct Agreement {
   int beams = 0;
-  // Lead through a wall of the map where they say that the way is free, and end farther than the
-  // tolerance behind it, and so does the next beam: one wall was drawn in two places. Near 0 where
-  // poses are right; who walks about adds hardly anything.
+  // Lead through walls of it (mapper/grid/crossed_walls.h): one wall was drawn in two places. Near
+  // 0 where poses are right; who walks about adds hardly anything.
   double crossing_share = 0.0;
   // Frame::index of the scan with the most of them, if any.
   std::optional<int> worst_frame;
 };
 
-// The tolerance is two cells, or three times the beams' noise where that is more; the noise is read
-// from the scans (second differences of neighbouring ranges). Empty for runs without such beams, as
-// for those that only localised themselves.
+// Empty for runs without such beams, as for those that only localised themselves.
 std::optional<Agreement> AgreementOf(const MapperResult& result);
 
 // A warning when so many beams disagree that the map must be wrong in parts.

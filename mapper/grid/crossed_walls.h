@@ -1,0 +1,36 @@
+// Which scans lead through walls of the map drawn from them: where they do, poses are wrong.
+#pragma once
+
+#include <vector>
+
+#include "mapper/core/mapped_frame.h"
+#include "mapper/core/occupancy_map.h"
+
+namespace depthgrid {
+
+// A scan laid into the map at its pose.
+struct CrossedWalls {
+  int mapped = 0;  // index of its frame
+  int beams = 0;   // examined, with a hit
+  // Of these, those that lead through a wall of the map where they say that the way is free, and
+  // end farther than the tolerance behind it, as does the next beam (a single one may be a wrong
+  // reading). Walls met at less than 45 degrees do not count.
+  int crossing = 0;
+
+  double share() const { return beams > 0 ? static_cast<double>(crossing) / beams : 0.0; }
+};
+
+// How much is examined: scans evenly spread over the frames, beams evenly spread over each.
+struct CrossedWallsSample {
+  std::size_t scans = 600;
+  std::size_t beams = 160;
+};
+
+// Of the kept scans, without those of a prior map, in order. The tolerance is two cells, or three
+// times the beams' noise where that is more; the noise is read from the scans (second differences
+// of neighbouring ranges).
+std::vector<CrossedWalls> WallsCrossed(const std::vector<MappedFrame>& frames,
+                                       const OccupancyMap& map,
+                                       const CrossedWallsSample& sample = {});
+
+}  // namespace depthgrid
