@@ -6,7 +6,6 @@
 #include "mapper/mapped_frames.h"
 
 namespace depthgrid {
-namespace {
 
 std::vector<PlanarLoop> Held(const std::vector<PlanarLoop>& loops, const Adjustment& adjustment) {
   std::vector<PlanarLoop> held;
@@ -16,8 +15,6 @@ std::vector<PlanarLoop> Held(const std::vector<PlanarLoop>& loops, const Adjustm
   return held;
 }
 
-}  // namespace
-
 void LoopOptions::Visit(OptionsVisitor& v) {
   v.Flag("use", use, "whether SLAM's loops correct the map");
   v.Flag("verify", verify, "whether a loop must make what its two places saw agree");
@@ -25,6 +22,8 @@ void LoopOptions::Visit(OptionsVisitor& v) {
   v.Number("bend_frames", bend_frames, {0, 1e9},
            "with more mapped frames, loops only bend the path until all is adjusted at the end");
   v.Group("search", search, "loops that the mapper finds itself");
+  v.Flag("join_doubled", join_doubled,
+         "whether places that the finished map shows twice are joined, where search.use is on");
   v.Group("slide", slide, "where the estimate is after a stretch that told little of it");
   v.Group("relocation", relocation, "where the camera is after SLAM was lost for seconds");
 }

@@ -23,11 +23,17 @@ struct LoopOptions {
   // s at 17,700 (docs/tried.md, "Loops that hold up a frame").
   int bend_frames = 4000;
   LoopSearchOptions search;
+  // Whether places that the finished map shows twice are joined (doubled_walls.h); only where loops
+  // are searched for.
+  bool join_doubled = true;
   SlideSearchOptions slide;
   RelocationOptions relocation;
 
   void Visit(OptionsVisitor& v);
 };
+
+// The loops that an adjustment with them accepted.
+std::vector<PlanarLoop> Held(const std::vector<PlanarLoop>& loops, const Adjustment& adjustment);
 
 // Collects the loops that passed the test and adjusts poses with them.
 class LoopCloser {

@@ -2,11 +2,25 @@
 #include <utility>
 
 #include "mapper/core/level.h"
+#include "mapper/doubled_walls.h"
 #include "mapper/frame_check.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/mapper_state.h"
 
 namespace depthgrid {
+namespace {
+
+// Joins made in one map at most, and the share of the crossing beams that one may leave.
+constexpr int kMostJoins = 4;
+constexpr double kJoinedShare = 0.5;
+
+std::vector<MappedFrame> WithPoses(std::vector<MappedFrame> frames,
+                                   const std::vector<Pose2>& map_from_base) {
+  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].map_from_base = map_from_base[i];
+  return frames;
+}
+
+}  // namespace
 
 MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& slam_final) {
   const std::vector<FrameRecord>& records = state_->history.records();
@@ -16,7 +30,7 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
   result.map_from_camera = std::move(final.map_from_camera);
   result.loops = std::move(final.loops);
   result.mapped = KeptFrames(state_->mapped.all(), final.map_from_base);
-  result.map = state_->Draw(result.mapped);
+  result.map = final.map ? std::move(*final.map) : state_->Draw(result.mapped);
   return result;
 }
 
@@ -47,13 +61,41 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalByAdjusti
   Adjustment adjustment =
       loop_closer.AdjustAll(mapped.all(), *reference, AdjustEffort::kFinish, {});
   FinalEstimate final;
-  for (std::size_t i = 0; i < loop_closer.loops().size(); ++i) {
-    if (adjustment.loop_accepted[i]) final.loops.push_back(loop_closer.loops()[i]);
-  }
-  final.loops = AmongKept(std::move(final.loops), mapped.all());
+  final.loops = Held(loop_closer.loops(), adjustment);
   final.map_from_base = std::move(adjustment.map_from_base);
+  JoinDoubledWalls(final);
+  final.loops = AmongKept(std::move(final.loops), mapped.all());
   final.map_from_camera = FinalPoses(history, final.map_from_base, stands);
   return final;
+}
+
+void IncrementalMapper::State::JoinDoubledWalls(FinalEstimate& final) const {
+  if (!options.loops.join_doubled || !options.loops.use || !loop_search) return;
+  std::vector<PlanarLoop> loops = loop_closer.loops();
+  std::vector<MappedFrame> frames = WithPoses(mapped.all(), final.map_from_base);
+  final.map = Draw(frames);
+  std::vector<CrossedWalls> crossed = WallsCrossed(frames, *final.map, kDoubledSample);
+  for (int joined = 0; joined < kMostJoins && CrossingShare(crossed) >= kDoubledShare; ++joined) {
+    auto loop = LoopOfDoubledWalls(frames, crossed, options.loops.search, options.loops.overlap);
+    if (!loop) return;
+    loop->on_trial = true;
+    loops.push_back(*loop);
+    // The first one moves poses far, the second one is as accurate as the adjustment so far.
+    Adjustment adjustment;
+    for (const AdjustEffort effort : {AdjustEffort::kCloseLoops, AdjustEffort::kFinish}) {
+      adjustment = reference->Adjust(frames, loops, effort, {});
+      if (!adjustment.loop_accepted.back()) return;
+      frames = WithPoses(std::move(frames), adjustment.map_from_base);
+    }
+    OccupancyMap map = Draw(frames);
+    std::vector<CrossedWalls> remaining = WallsCrossed(frames, map, kDoubledSample);
+    if (CrossingShare(remaining) > kJoinedShare * CrossingShare(crossed)) return;
+    crossed = std::move(remaining);
+    loops.back().on_trial = false;
+    final.loops = Held(loops, adjustment);
+    final.map_from_base = std::move(adjustment.map_from_base);
+    final.map = std::move(map);
+  }
 }
 
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalOfSlam(

@@ -139,11 +139,14 @@ struct IncrementalMapper::State {
     std::vector<Pose2> map_from_base;                   // of the mapped frames
     std::vector<std::optional<Pose3>> map_from_camera;  // of all frames
     std::vector<PlanarLoop> loops;                      // accepted, among the kept frames
+    std::optional<OccupancyMap> map;                    // drawn at these poses, if it was needed
   };
   FinalEstimate Final(const std::vector<std::optional<Pose3>>& slam_final) const;
   std::vector<Pose2> MappedPoses() const;
   FinalEstimate FinalAsItIs() const;
   FinalEstimate FinalByAdjusting() const;
+  // Joins what the map of these poses shows twice, if anything.
+  void JoinDoubledWalls(FinalEstimate& final) const;
   FinalEstimate FinalOfSlam(const std::vector<std::optional<Pose3>>& slam_final) const;
   OccupancyMap Draw(const std::vector<MappedFrame>& frames) const;
 };

@@ -129,4 +129,13 @@ std::vector<CrossedWalls> WallsCrossed(const std::vector<MappedFrame>& frames,
   return found;
 }
 
+double CrossingShare(const std::vector<CrossedWalls>& scans) {
+  CrossedWalls all;
+  for (const CrossedWalls& scan : scans) {
+    all.beams += scan.beams;
+    all.crossing += scan.crossing;
+  }
+  return all.share();
+}
+
 }  // namespace depthgrid

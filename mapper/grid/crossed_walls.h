@@ -33,4 +33,7 @@ std::vector<CrossedWalls> WallsCrossed(const std::vector<MappedFrame>& frames,
                                        const OccupancyMap& map,
                                        const CrossedWallsSample& sample = {});
 
+// Of all beams examined; 0 if there are none.
+double CrossingShare(const std::vector<CrossedWalls>& scans);
+
 }  // namespace depthgrid

@@ -1,0 +1,27 @@
+// Finds out where a finished map shows one place twice (docs/math.md, "Walls drawn twice").
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mapper/core/reference_map.h"
+#include "mapper/graph/loop_search_options.h"
+#include "mapper/grid/crossed_walls.h"
+
+namespace depthgrid {
+
+// What is examined of a map before poses are final: 10 ms.
+constexpr CrossedWallsSample kDoubledSample{300, 80};
+// From this share of beams on walls are drawn twice: right maps have at most 0.9 %, with much noise
+// 1.8 % (docs/results.md, "Scans against their map").
+constexpr double kDoubledShare = 0.02;
+
+// A loop from a scan that leads through many walls to another time at which its place was seen, if
+// one is found that asks for a correction (`search.min_correction_*`). `crossed`: of the map drawn
+// from these frames.
+std::optional<PlanarLoop> LoopOfDoubledWalls(const std::vector<MappedFrame>& frames,
+                                             std::vector<CrossedWalls> crossed,
+                                             const LoopSearchOptions& search,
+                                             const OverlapOptions& overlap);
+
+}  // namespace depthgrid
