@@ -291,10 +291,10 @@ void SayResult(const MappingRun& run, bool localised, const std::optional<Agreem
     fmt::print("; {} of {} taken", taken, Counted(run.loops.size(), "loop closure"));
   }
   if (found > 0) fmt::print("; {} found", Counted(found, "loop closure"));
-  if (agreement) {
-    fmt::print("; {:.1f} % of the beams lead through its walls", 100.0 * agreement->crossing_share);
-  }
   fmt::print("\n");
+  if (!agreement) return;
+  fmt::print("{:.1f} % of the beams lead through walls of the map\n",
+             100.0 * agreement->crossing_share);
 }
 
 // Warnings about the run; `begin`: its start in a finished map, if any.

@@ -23,15 +23,17 @@ double RangeM(double x_m, double y_m, double angle_rad) {
   return std::min(along_x_m, (s > 0.0 ? 4.0 - y_m : y_m) / std::max(std::abs(s), 1e-9));
 }
 
-// There and back along the room, its odometry in units of `odometry_scale` metres.
-std::string ThereAndBack(double odometry_scale) {
+// There and back along the room, its odometry in units of `odometry_scale` metres and on the way
+// back `aside_m` to the left.
+std::string ThereAndBack(double odometry_scale, double aside_m = 0.0) {
   std::string log;
   for (int i = 0; i <= 40; ++i) {
     const double x_m = 1.0 + 0.1 * (i <= 20 ? i : 40 - i);
     log += "FLASER 181";
     for (int k = 0; k <= 180; ++k)
       log += fmt::format(" {:.3f}", RangeM(x_m, 1.0, (k - 90) * kPi / 180.0));
-    log += fmt::format(" {0:.3f} 1 0 {0:.3f} 1 0 {1} host 0\n", odometry_scale * x_m, i);
+    log += fmt::format(" {0:.3f} {1:.3f} 0 {0:.3f} {1:.3f} 0 {2} host 0\n", odometry_scale * x_m,
+                       1.0 + (i > 20 ? aside_m : 0.0), i);
   }
   return log;
 }
@@ -146,6 +148,20 @@ TEST_F(ProgramLogs, ThatFewWereMatchedIsSaid) {
   EXPECT_THAT(Program("map half.log -o out").err,
               HasSubstr("half.log: 40 of 50 scans could be matched, the poses of the others are "
                         "those given: the others have 0 beams with a hit on average\n"));
+}
+
+// Drawn at poses that are off on the way back, its walls stand in two places.
+TEST_F(ProgramLogs, AMapThatContradictsItsScansIsWarnedOf) {
+  Write("robot.log", ThereAndBack(1.0, 0.5));
+  const std::string trusting = " --set mapper.fusion.mode=fixed --set mapper.fusion.gain=0";
+  const Outcome wrong = Program("map robot.log -o wrong" + trusting);
+  EXPECT_EQ(wrong.exit_code, 0);
+  EXPECT_THAT(wrong.err, HasSubstr("robot.log: the map contradicts its own scans: "));
+  EXPECT_THAT(ReadFile(Path("wrong/warnings.txt")), HasSubstr("contradicts its own scans"));
+  Write("right.log", ThereAndBack(1.0));
+  const Outcome right = Program("map right.log -o right" + trusting);
+  EXPECT_THAT(right.out, HasSubstr("\n0.0 % of the beams lead through walls of the map\n"));
+  EXPECT_EQ(right.err, "");
 }
 
 // Its odometry is right; then told loops.
