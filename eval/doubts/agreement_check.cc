@@ -31,8 +31,7 @@ std::optional<std::string> DoubtOfAgreement(const Agreement& agreement) {
   if (agreement.crossing_share < kManyCrossing) return {};
   return fmt::format(
       "the map contradicts its own scans: {:.1f} % of the beams lead through its walls (most "
-      "around "
-      "frame {}), so walls are drawn twice or askew, as where poses are wrong",
+      "around frame {}), so walls are drawn twice or askew, as where poses are wrong",
       100.0 * agreement.crossing_share, *agreement.worst_frame);
 }
 
