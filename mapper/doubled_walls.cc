@@ -9,6 +9,7 @@
 namespace depthgrid {
 namespace {
 
+// The limits below are choices; what others gave: docs/tried.md, "Lost and found".
 // A scan of which this share leads through walls lies wrong, or the walls do.
 constexpr double kMuchOfScan = 0.2;
 // Most scans that are searched for, and most places for each.

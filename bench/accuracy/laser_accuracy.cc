@@ -14,7 +14,7 @@
 #include "bench/command_line.h"
 #include "bench/guarded_main.h"
 #include "bench/mapper_settings.h"
-#include "eval/doubts/agreement_check.h"
+#include "eval/doubts/crossing_check.h"
 #include "eval/metrics/alignment.h"
 #include "eval/metrics/trajectory_metrics.h"
 #include "eval/run/consistency.h"
@@ -100,7 +100,7 @@ struct Experiment {
 struct Run {
   Errors prior, online, final;
   std::vector<ChiSquareSample> nis, nees;
-  Agreement agreement;
+  Crossing crossing;
   double frame_us = 0.0, finish_us = 0.0, match_us = 0.0, insert_us = 0.0;  // means over the frames
 };
 
@@ -141,7 +141,7 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Experime
   const double start_us = ThreadCpuUs();
   const MapperResult result = mapper.Finish();
   run.finish_us = (ThreadCpuUs() - start_us) / frames;
-  run.agreement = AgreementOf(result).value_or(Agreement{});
+  run.crossing = CrossingOf(result).value_or(Crossing{});
   for (const auto& pose : result.map_from_camera) final.push_back(BaseOf(*pose));
   run.nis = InnovationSamples(reports);
   run.nees = MotionSamples(reports, stamped_truth);
@@ -174,7 +174,7 @@ void PrintRun(const std::string& world, int seed, const Run& run) {
       "frame %.0f match %.0f insert %.0f finish %.0f | beams through walls %.4f\n",
       world.c_str(), seed, run.prior.mean, run.prior.ate, run.online.mean, run.online.ate,
       run.online.max, run.final.mean, run.final.ate, run.final.max, run.frame_us, run.match_us,
-      run.insert_us, run.finish_us, run.agreement.crossing_share);
+      run.insert_us, run.finish_us, run.crossing.share);
 }
 
 void PrintMeans(const std::string& world, const std::vector<Run>& runs) {

@@ -13,7 +13,7 @@
 #include "eval/cli/map_settings.h"
 #include "eval/cli/pose_doubt_text.h"
 #include "eval/cli/video_output.h"
-#include "eval/doubts/agreement_check.h"
+#include "eval/doubts/crossing_check.h"
 #include "eval/doubts/floor_check.h"
 #include "eval/doubts/mount_check.h"
 #include "eval/doubts/view_check.h"
@@ -260,7 +260,7 @@ void CheckMatches(const MapArguments& arguments, const MapSettings& settings, co
   warnings.push_back(arguments.input + ": no scan could be matched, the poses are those given");
 }
 
-void SayResult(const MappingRun& run, bool localised, const std::optional<Agreement>& agreement) {
+void SayResult(const MappingRun& run, bool localised, const std::optional<Crossing>& crossing) {
   int posed = 0, well_seen = 0;
   for (const FrameReport& report : run.reports) {
     posed += report.slam_from_camera ? 1 : 0;
@@ -292,9 +292,8 @@ void SayResult(const MappingRun& run, bool localised, const std::optional<Agreem
   }
   if (found > 0) fmt::print("; {} found", Counted(found, "loop closure"));
   fmt::print("\n");
-  if (!agreement) return;
-  fmt::print("{:.1f} % of the beams lead through walls of the map\n",
-             100.0 * agreement->crossing_share);
+  if (!crossing) return;
+  fmt::print("{:.1f} % of the beams lead through walls of the map\n", 100.0 * crossing->share);
 }
 
 // Warnings about the run; `begin`: its start in a finished map, if any.
@@ -358,8 +357,8 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   bar.Say("writing the map and the report");
   const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
-  const auto agreement = AgreementOf(run.result);
-  if (const auto doubt = agreement ? DoubtOfAgreement(*agreement) : std::nullopt) {
+  const auto crossing = CrossingOf(run.result);
+  if (const auto doubt = crossing ? DoubtOfCrossing(*crossing) : std::nullopt) {
     warnings.push_back(arguments.input + ": " + *doubt);
   }
   if (arguments.localise) {
@@ -380,7 +379,7 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   NoteResult("the map is in " + arguments.common.output);
   WriteVideo(arguments.output, arguments.common, run, settings.mapper.grid);
   bar.Clear();
-  SayResult(run, arguments.localise, agreement);
+  SayResult(run, arguments.localise, crossing);
   SayReport(arguments.common.output);
   std::fflush(stdout);
   Warn(warnings);

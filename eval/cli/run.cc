@@ -11,7 +11,7 @@
 #include "eval/cli/interrupts.h"
 #include "eval/cli/shader_cache.h"
 #include "eval/cli/video_output.h"
-#include "eval/doubts/agreement_check.h"
+#include "eval/doubts/crossing_check.h"
 #include "eval/doubts/truth_check.h"
 #include "eval/doubts/view_check.h"
 #include "eval/experiment/idle_settings.h"
@@ -120,7 +120,7 @@ void RunOne(const RunArguments& arguments) {
   const auto doubts = DoubtsOfSettings(arguments.experiment, arguments.common.set);
   record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
   for (const auto& doubt :
-       {DoubtOfView(run.mapping, run.options), DoubtOfAgreement(run.mapping.result),
+       {DoubtOfView(run.mapping, run.options), DoubtOfCrossing(run.mapping.result),
         DoubtOfTruth(run.world, run.truth, run.options)}) {
     if (doubt) record.warnings.push_back(*doubt);
   }

@@ -113,16 +113,18 @@ std::string LagTable(const std::vector<LagError>& measured, const std::vector<La
 std::vector<std::string> DoubtOfFit(const std::vector<LagError>& measured,
                                     const std::vector<LagError>& imitated, double tracked_s,
                                     const std::string& place) {
-  constexpr double kPoorFactor = 1.5;
-  constexpr double kFewestMotions = 20.0;
+  constexpr double kPoorFactor =
+      1.5;  // over such lags the fits of docs/slam_surrogate.md reach 1.3
+  constexpr double kFewestMotions = 20.0;  // of which a root mean square is known to 16 %
   constexpr double kLeastM = 1e-3, kLeastDeg = 0.05;  // smaller errors are of no account
   double worst = kPoorFactor;
   std::string doubt;
   const auto judge = [&](double run, double surrogate, double least, const LagError& lag,
                          const std::string& what) {
-    const double more = std::max(run, least), less = std::max(surrogate, least);
-    if (std::max(more / less, less / more) <= worst) return;
-    worst = std::max(more / less, less / more);
+    const double ratio = std::max(run, least) / std::max(surrogate, least);
+    const double factor = std::max(ratio, 1.0 / ratio);
+    if (factor <= worst) return;
+    worst = factor;
     doubt = fmt::format("{}: the settings below imitate this run badly: over {:.3g} s {}", place,
                         lag.lag_s, what);
   };

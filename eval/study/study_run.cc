@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "eval/doubts/agreement_check.h"
+#include "eval/doubts/crossing_check.h"
 #include "eval/doubts/truth_check.h"
 #include "eval/doubts/view_check.h"
 #include "eval/output/run_folder.h"
@@ -63,7 +63,7 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
   RunRecord record =
       RecordOf(run.options, joint.world, run.slam, run.mapping, joint.truth, run.scores);
   for (const auto& doubt :
-       {DoubtOfView(run.mapping, run.options), DoubtOfAgreement(run.mapping.result),
+       {DoubtOfView(run.mapping, run.options), DoubtOfCrossing(run.mapping.result),
         DoubtOfTruth(joint.world, joint.truth, run.options)}) {
     if (doubt) record.warnings.push_back(*doubt);
   }

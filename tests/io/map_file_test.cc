@@ -143,7 +143,6 @@ TEST_F(MapFileTest, TrinaryRoundTripKeepsTheStates) {
             "negate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n");
 }
 
-// In UTM coordinates a corner has seven digits before the point.
 // As a robot's before its first scan (IncrementalMapper::CurrentMap).
 TEST_F(MapFileTest, AMapWithoutCellsIsWrittenAsAnUnknownOne) {
   for (const MapMode mode : {MapMode::kTrinary, MapMode::kScale, MapMode::kRaw}) {
@@ -154,6 +153,7 @@ TEST_F(MapFileTest, AMapWithoutCellsIsWrittenAsAnUnknownOne) {
   }
 }
 
+// In UTM coordinates a corner has seven digits before the point.
 TEST_F(MapFileTest, AMapFarFromItsOriginKeepsItsLattice) {
   OccupancyMap map = RandomMap();
   map.geometry.resolution_m = 0.025;

@@ -1,4 +1,4 @@
-#include "eval/doubts/agreement_check.h"
+#include "eval/doubts/crossing_check.h"
 
 #include <gtest/gtest.h>
 
@@ -54,26 +54,26 @@ MapperResult ResultOf(const std::vector<Scan>& scans, const OccupancyMap& map) {
   return result;
 }
 
-double ShareOf(const MapperResult& result) { return AgreementOf(result)->crossing_share; }
+double ShareOf(const MapperResult& result) { return CrossingOf(result)->share; }
 
-TEST(Agreement, OfScansWithTheirOwnWallIsWhole) {
-  const auto agreement = AgreementOf(ResultOf({ScanOfWall(kWallM)}, MapWithWalls({kWallM})));
-  ASSERT_TRUE(agreement.has_value());
-  EXPECT_EQ(agreement->beams, 80);  // every second one, as there are more than 160
-  EXPECT_EQ(agreement->crossing_share, 0.0);
-  EXPECT_FALSE(agreement->worst_frame.has_value());
-  EXPECT_FALSE(DoubtOfAgreement(*agreement).has_value());
+TEST(CrossingCheck, ScansCrossNoneOfTheirOwn) {
+  const auto crossing = CrossingOf(ResultOf({ScanOfWall(kWallM)}, MapWithWalls({kWallM})));
+  ASSERT_TRUE(crossing.has_value());
+  EXPECT_EQ(crossing->beams, 80);  // every second one, as there are more than 160
+  EXPECT_EQ(crossing->share, 0.0);
+  EXPECT_FALSE(crossing->worst_frame.has_value());
+  EXPECT_FALSE(DoubtOfCrossing(*crossing).has_value());
 }
 
-TEST(Agreement, AWallDrawnTwiceIsCrossedByTheScansOfTheFartherOne) {
+TEST(CrossingCheck, AWallDrawnTwiceIsCrossedByTheScansOfTheFartherOne) {
   const OccupancyMap twice = MapWithWalls({kWallM - 0.3, kWallM});
   const std::vector<Scan> scans = {ScanOfWall(kWallM - 0.3), ScanOfWall(kWallM),
                                    ScanOfWall(kWallM - 0.3)};
-  const auto agreement = AgreementOf(ResultOf(scans, twice));
-  ASSERT_TRUE(agreement.has_value());
-  EXPECT_NEAR(agreement->crossing_share, 1.0 / 3.0, 0.01);
-  EXPECT_EQ(agreement->worst_frame, 11);
-  const auto doubt = DoubtOfAgreement(*agreement);
+  const auto crossing = CrossingOf(ResultOf(scans, twice));
+  ASSERT_TRUE(crossing.has_value());
+  EXPECT_NEAR(crossing->share, 1.0 / 3.0, 0.01);
+  EXPECT_EQ(crossing->worst_frame, 11);
+  const auto doubt = DoubtOfCrossing(*crossing);
   ASSERT_TRUE(doubt.has_value());
   EXPECT_NE(doubt->find("33.3 % of the beams"), std::string::npos) << *doubt;
   EXPECT_NE(doubt->find("around frame 11)"), std::string::npos) << *doubt;
@@ -81,7 +81,7 @@ TEST(Agreement, AWallDrawnTwiceIsCrossedByTheScansOfTheFartherOne) {
   EXPECT_EQ(ShareOf(ResultOf({ScanOfWall(kWallM)}, MapWithWalls({kWallM - 0.05, kWallM}))), 0.0);
 }
 
-TEST(Agreement, NoiseOfTheBeamsIsNoContradiction) {
+TEST(CrossingCheck, NoiseOfTheBeamsIsNone) {
   for (const double noise_share : {0.01, 0.03, 0.1}) {
     std::vector<Scan> scans;
     for (int seed = 1; seed <= 20; ++seed) {
@@ -91,7 +91,7 @@ TEST(Agreement, NoiseOfTheBeamsIsNoContradiction) {
   }
 }
 
-TEST(Agreement, SingleWrongReadingsAreNone) {
+TEST(CrossingCheck, SingleWrongReadingsAreNone) {
   Scan scan = ScanOfWall(kWallM);
   for (std::size_t i = 0; i < scan.beams.size(); i += 5) {
     scan.beams[i].range_m = scan.beams[i].clear_to_m = 3.0F;
@@ -100,22 +100,22 @@ TEST(Agreement, SingleWrongReadingsAreNone) {
 }
 
 // A depth camera that looks over a chest in front of it knows nothing of the way below the image.
-TEST(Agreement, OnlyWhereTheBeamSaysThatTheWayIsFree) {
+TEST(CrossingCheck, OnlyWhereTheBeamSaysThatTheWayIsFree) {
   Scan scan = ScanOfWall(kWallM);
   for (Beam& beam : scan.beams) beam.clear_from_m = 1.0F / std::cos(beam.bearing_rad);
   EXPECT_EQ(ShareOf(ResultOf({scan}, MapWithWalls({0.8, kWallM}))), 0.0);
   EXPECT_EQ(ShareOf(ResultOf({scan}, MapWithWalls({1.3, kWallM}))), 1.0);
 }
 
-TEST(Agreement, IsOfTheRunsOwnKeptScans) {
+TEST(CrossingCheck, IsOfTheRunsOwnKeptScans) {
   MapperResult result = ResultOf({ScanOfWall(kWallM), ScanOfWall(kWallM)}, MapWithWalls({1.5}));
   EXPECT_EQ(ShareOf(result), 1.0);
   result.mapped[0].frame = -1;  // of the map that it went on in
   result.mapped[1].tied_to = 0;
-  EXPECT_FALSE(AgreementOf(result).has_value());
-  EXPECT_FALSE(DoubtOfAgreement(result).has_value());
-  EXPECT_FALSE(AgreementOf({}).has_value());
-  EXPECT_FALSE(AgreementOf(ResultOf({Scan{}}, OccupancyMap{})).has_value());
+  EXPECT_FALSE(CrossingOf(result).has_value());
+  EXPECT_FALSE(DoubtOfCrossing(result).has_value());
+  EXPECT_FALSE(CrossingOf({}).has_value());
+  EXPECT_FALSE(CrossingOf(ResultOf({Scan{}}, OccupancyMap{})).has_value());
 }
 
 }  // namespace

@@ -10,20 +10,20 @@
 namespace depthgrid {
 
 // Of a sample of the run's kept beams with a hit, laid into the map at the final poses.
-struct Agreement {
+struct Crossing {
   int beams = 0;
   // Lead through walls of it (mapper/grid/crossed_walls.h): one wall was drawn in two places. Near
   // 0 where poses are right; who walks about adds hardly anything.
-  double crossing_share = 0.0;
+  double share = 0.0;
   // Frame::index of the scan with the most of them, if any.
   std::optional<int> worst_frame;
 };
 
 // Empty for runs without such beams, as for those that only localised themselves.
-std::optional<Agreement> AgreementOf(const MapperResult& result);
+std::optional<Crossing> CrossingOf(const MapperResult& result);
 
 // A warning when so many beams disagree that the map must be wrong in parts.
-std::optional<std::string> DoubtOfAgreement(const Agreement& agreement);
-std::optional<std::string> DoubtOfAgreement(const MapperResult& result);
+std::optional<std::string> DoubtOfCrossing(const Crossing& crossing);
+std::optional<std::string> DoubtOfCrossing(const MapperResult& result);
 
 }  // namespace depthgrid
