@@ -1,15 +1,17 @@
 #!/usr/bin/python3
 """Rooms, paths, depth cameras and SLAM drawn at random, and how far depthgrid run is off in them (python3-numpy).
 
-    random_scenes.py DEPTHGRID FOLDER FIRST COUNT [-- ARGUMENT ...]
+    random_scenes.py DEPTHGRID FOLDER FIRST COUNT [--uneven] [-- ARGUMENT ...]
 
 Scene i is a building of random_buildings.py up to 20 m long, its walls up to the ceiling, with or without furniture of
 several forms and heights. The path leads between random places in it, 30 or 60 s, on a robot (the camera .25 to 1.2 m
 high) or hand-held. Camera, depth noise, its artifacts, SLAM profile, drift, loops and losses are drawn as well. FOLDER
 keeps the scenes (sI.yaml), paths (sI.path.txt), experiments (sI.run.yaml), the results of each run (sI.out) and those
 of earlier calls; the arguments behind -- go to depthgrid run. The same number gives the same scene and settings.
-docs/results.md, "Random rooms".
+--uneven: floors with rugs, platforms, ramps and lower parts, and SLAM that drifts as it does. docs/results.md, "Random
+rooms".
 """
+import csv
 import json
 import math
 import os
@@ -90,6 +92,52 @@ class Room(buildings.Building):
             self.add_box(0.05, 0.05, tall - 0.04, leg_x, leg_y, 0, yaw_rad)
 
 
+class UnevenRoom(Room):
+    """One with rugs, platforms, ramps and lower floors beside the way; over a rug of up to 12 cm it also leads."""
+
+    def __init__(self, number):
+        super().__init__(number)
+        look = self.look
+        self.shapes.pop(next(k for k, shape in enumerate(self.shapes) if "-0.1000]" in shape))
+        holes = []
+        for kind in look.choice(["rug", "platform", "ramp", "lower"], size=2, replace=False):
+            for _ in range(int(look.integers(1, 3))):
+                sx, sy = look.uniform(0.8, 3, 2)
+                x, y = look.uniform(0.5, self.width - 0.5), look.uniform(0.5, self.height - 0.5)
+                if kind == "rug":
+                    self.add_box(sx, sy, look.uniform(0.01, 0.12), x, y, 0, look.uniform(0, math.pi))
+                    continue
+                if kind == "platform":
+                    self.add_box(sx, sy, look.uniform(0.13, 0.5), x, y, 0)
+                elif kind == "ramp":
+                    self.add_ramp(sx, sy, look.uniform(3, 10), x, y)
+                elif any(abs(x - u) < (sx + w) / 2 + 0.2 and abs(y - v) < (sy + h) / 2 + 0.2
+                         for u, v, w, h, _ in holes):
+                    continue
+                else:
+                    holes.append((x, y, sx, sy, look.uniform(0.08, 0.6)))
+                self.add_polygon(corners(sx, sy, x, y, 0.0))
+        self.add_floor(holes)
+
+    def add_ramp(self, sx, sy, degrees, x, y):
+        """Up along x, its upper edge a drop."""
+        rise = sx * math.tan(math.radians(degrees))
+        self.shapes.append(f"{{shape: prism, outline: [[0, 0], [{sx:.4f}, 0], [{sx:.4f}, {rise:.4f}]], "
+                           f"height_m: {sy:.4f}, at: [{x - sx / 2:.4f}, {y + sy / 2:.4f}, 0], rpy_deg: [90, 0, 0]}}")
+
+    def add_floor(self, holes):
+        """In strips from hole to hole."""
+        cuts = sorted({-0.5, self.width + 0.5, *(x + side * sx / 2 for x, _, sx, _, _ in holes for side in (-1, 1))})
+        for x0, x1 in zip(cuts, cuts[1:]):
+            across = [(y, sy) for x, y, sx, sy, _ in holes if abs((x0 + x1) / 2 - x) < sx / 2]
+            ends = [-0.5, *(y + side * sy / 2 for y, sy in sorted(across) for side in (-1, 1)), self.height + 0.5]
+            for y0, y1 in zip(ends[::2], ends[1::2]):
+                if y1 > y0:
+                    self.add_box(x1 - x0, y1 - y0, 0.8, (x0 + x1) / 2, (y0 + y1) / 2, -0.8)
+        for x, y, sx, sy, depth in holes:
+            self.add_box(sx + 0.2, sy + 0.2, 0.1, x, y, -depth - 0.1)
+
+
 def corners(sx, sy, x, y, yaw_rad):
     c, s = math.cos(yaw_rad), math.sin(yaw_rad)
     return [(x + c * u - s * v, y + s * u + c * v)
@@ -167,9 +215,9 @@ def experiment(number, drawn):
     return "".join(line + "\n" for line in lines)
 
 
-def write_scene(number, folder, drawn):
+def write_scene(number, folder, drawn, uneven):
     # every third building is one of 20 to 45 m
-    room = Room(number if number % 3 != 2 else number + 1)
+    room = (UnevenRoom if uneven else Room)(number if number % 3 != 2 else number + 1)
     poses = buildings.way_through(room)
     if poses is None:
         return False
@@ -183,22 +231,30 @@ def write_scene(number, folder, drawn):
 
 
 def scores_of(folder):
-    """Mean error of SLAM, online and final, m, and F1 of observable walls."""
+    """Mean error of SLAM, online and final, m; F1 of observable walls; share of frames in which the camera was taken to
+    be 4 cm higher or lower above the floor than it is."""
     with open(folder + "/metrics.json", encoding="ascii") as file:
         metrics = json.load(file)
     errors = [metrics["trajectory"][name]["mean_euclidean_m"] for name in ("slam", "online", "est")]
-    return [*errors, metrics["map"]["observable"]["occupied"]["f1"]]
+    with open(folder + "/trajectory_truth.txt", encoding="ascii") as file:
+        true_m = {line.split()[0]: float(line.split()[3]) for line in file if not line.startswith("#")}
+    with open(folder + "/frames.csv", encoding="ascii") as file:
+        off_m = [abs(float(row["camera_height_m"]) - true_m[row["stamp_s"]])
+                 for row in csv.DictReader(file) if row["camera_height_m"]]
+    return [*errors, metrics["map"]["observable"]["occupied"]["f1"], float(np.mean(np.array(off_m) > 0.04))]
 
 
 def main():
-    command = buildings.read_command(__doc__, "depthgrid")
+    command = buildings.read_command(__doc__, "depthgrid", "--uneven")
     if command is None:
         return 2
-    program, folder, numbers, _, more = command
+    program, folder, numbers, uneven, more = command
     rows = []
     for number in numbers:
         drawn, name = settings_of(number), f"{folder}/s{number}"
-        if not os.path.exists(name + ".run.yaml") and not write_scene(number, folder, drawn):
+        if uneven:
+            drawn.update(drift_scale=None, lost=0)
+        if not os.path.exists(name + ".run.yaml") and not write_scene(number, folder, drawn, uneven):
             continue
         done = subprocess.run([program, "run", name + ".run.yaml", "-o", name + ".out", "--force", *more],
                               capture_output=True, text=True, check=False)
@@ -206,12 +262,12 @@ def main():
             return buildings.refuse(done.stderr.strip())
         rows.append(scores_of(name + ".out"))
         print(f"s{number}", *(f"{key} {value}" for key, value in drawn.items()),
-              "slam %.4f online %.4f final %.4f f1 %.3f" % tuple(rows[-1]), flush=True)
+              "slam %.4f online %.4f final %.4f f1 %.3f height off %.3f" % tuple(rows[-1]), flush=True)
     if not rows:
         return buildings.refuse("no building has room for a way")
     off = np.array(rows)
-    print(f"{len(rows)} runs", *("%s of slam %.4f online %.4f final %.4f f1 %.3f;" % (name, *middle(off, axis=0))
-                                 for name, middle in (("mean", np.mean), ("median", np.median))),
+    scores = "%s of slam %.4f online %.4f final %.4f f1 %.3f height off %.3f;"
+    print(f"{len(rows)} runs", scores % ("mean", *np.mean(off, axis=0)), scores % ("median", *np.median(off, axis=0)),
           f"worse than SLAM by more than 1 cm: online {int((off[:, 1] > off[:, 0] + 0.01).sum())}, "
           f"final {int((off[:, 2] > off[:, 0] + 0.01).sum())}")
     return 0

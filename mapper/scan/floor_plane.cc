@@ -3,6 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "mapper/core/angle.h"
 
 namespace depthgrid {
 namespace {
@@ -23,10 +26,8 @@ constexpr float kBinM = 0.02F;
 constexpr int kBins = 145;
 // Farther floor is seen at a grazing angle and measured badly.
 constexpr float kMaxDistanceM = 5.0F;
-// A peak of three bins counts as a surface if it has this share of all samples and this share of
-// the highest peak. Skirting boards and noise below a floor have less.
+// A peak of three bins counts as a surface if it has this share of all samples.
 constexpr double kMinImageShare = 0.01;
-constexpr double kMinPeakShare = 0.25;
 // Points farther than this from the plane have no weight, per iteration: tilt and height may be off
 // at first; in the end rugs, door sills and chair feet must be excluded (with 6 cm they tilted the
 // office room's floor by 0.9 degrees).
@@ -35,6 +36,14 @@ constexpr double kWidestGateSigmas = 2.5;
 constexpr double kSigmaM = 0.02;  // of a point's height
 // Errors of neighbouring points are correlated, so this many count as one.
 constexpr double kPointsPerWitness = 10.0;
+// The plane on which most points lie is known to a few centimetres.
+constexpr double kDensestM = 0.03;
+// A plane is another surface than that at the expected height if its height differs by more than
+// this and than its tilt explains for points this far away.
+constexpr double kOtherM = 0.04;
+constexpr double kUsualDistanceM = 3.5;
+// Points this near to a plane lie on it.
+constexpr float kNearM = 0.01F;
 // A plane tilted by more than this from the expected one is not the floor.
 constexpr double kMostTilt = 0.15;
 
@@ -69,6 +78,11 @@ Sums SumsOver(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f&
   return sums;
 }
 
+// z = plane[0] + plane[1] x + plane[2] y.
+Eigen::Vector3d PlaneOf(const FloorPrior& prior) {
+  return Eigen::Vector3d(-prior.height_m, -prior.up.x(), -prior.up.y()) / prior.up.z();
+}
+
 Eigen::Vector3d Solved(const Sums& sums, const FloorPrior& prior) {
   const auto square = [](double value) { return value * value; };
   Eigen::Matrix3d h;
@@ -80,8 +94,55 @@ Eigen::Vector3d Solved(const Sums& sums, const FloorPrior& prior) {
   h.diagonal() +=
       variance * Eigen::Vector3d(1.0 / square(prior.sigma_m), 1.0 / square(prior.sigma_rad),
                                  1.0 / square(prior.sigma_rad));
-  g[0] -= variance / square(prior.sigma_m) * prior.height_m;
+  const Eigen::Vector3d expected = PlaneOf(prior);
+  g[0] += variance / square(prior.sigma_m) * expected[0];
+  g.tail<2>() += variance / square(prior.sigma_rad) * expected.tail<2>();
   return h.ldlt().solve(g);
+}
+
+int PointsNear(const std::vector<Eigen::Vector3f>& points, const FloorPlane& plane) {
+  const Eigen::Vector3f up = plane.up.cast<float>();
+  const auto height = static_cast<float>(plane.height_m);
+  int count = 0;
+  for (const Eigen::Vector3f& p : points) count += std::abs(up.dot(p) + height) < kNearM ? 1 : 0;
+  return count;
+}
+
+double MostOffM(const FloorPlane& plane) {
+  return kOtherM + kUsualDistanceM * plane.up.head<2>().norm();
+}
+
+// The plane on which most points lie, of those at most kMostOffM from the expected height and
+// tilted by whole degrees (a Hough transform), as a prior.
+FloorPrior DensestPlane(const LevelPoints& level, const FloorPrior& expected) {
+  constexpr int kDegrees = 4;
+  constexpr std::size_t kPoints = 400;
+  constexpr float kMostOffM = 0.24F, kThickM = 0.01F;
+  constexpr int kSlices = 48;
+  const std::size_t every = std::max<std::size_t>(1, level.points.size() / kPoints);
+  const auto top = -static_cast<float>(expected.height_m) - kMostOffM;
+  FloorPrior densest{expected.height_m, kDensestM, expected.sigma_rad};
+  int most = 0;
+  for (int i = -kDegrees; i <= kDegrees; ++i) {
+    for (int j = -kDegrees; j <= kDegrees; ++j) {
+      const auto a = static_cast<float>(RadFromDeg(i)), b = static_cast<float>(RadFromDeg(j));
+      std::array<int, kSlices> slices{};
+      for (std::size_t k = 0; k < level.points.size(); k += every) {
+        const Eigen::Vector3f& p = level.points[k];
+        const float slice = (p.z() - a * p.x() - b * p.y() - top) / kThickM;
+        if (slice >= 0.0F && slice < kSlices) ++slices[static_cast<std::size_t>(slice)];
+      }
+      for (std::size_t k = 1; k < kSlices; ++k) {
+        if (slices[k - 1] + slices[k] <= most) continue;
+        most = slices[k - 1] + slices[k];
+        densest.up =
+            Eigen::Vector3d(static_cast<double>(-a), static_cast<double>(-b), 1.0).normalized();
+        densest.height_m =
+            static_cast<double>(-top - static_cast<float>(k) * kThickM) * densest.up.z();
+      }
+    }
+  }
+  return densest;
 }
 
 }  // namespace
@@ -119,29 +180,35 @@ LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
   return memory;
 }
 
-std::optional<double> LowestSurface(const LevelPoints& level) {
-  std::array<int, kBins + 2> histogram{};  // with one empty bin at either end
+std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level) {
+  constexpr std::size_t kMargin = 3;  // empty bins at either end
+  std::array<int, kBins + 2 * kMargin> histogram{};
   for (const Eigen::Vector3f& point : level.points) {
     const int bin = static_cast<int>((-point.z() - kMinHeightM) / kBinM);
-    ++histogram[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1)) + 1];
+    ++histogram[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1)) + kMargin];
   }
-  const auto peak = [&](std::size_t bin) {
+  const auto peak = [&](std::size_t bin) {  // of three bins
     return histogram[bin - 1] + histogram[bin] + histogram[bin + 1];
   };
-  int highest = 0;
-  for (std::size_t bin = 1; bin <= kBins; ++bin) highest = std::max(highest, peak(bin));
-  const double enough = std::max(kMinImageShare * level.samples, kMinPeakShare * highest);
-  std::size_t lowest = kBins;  // the largest drop whose peak is high enough
-  while (lowest > 0 && peak(lowest) < enough) --lowest;
-  if (lowest == 0) return {};
-  // Climb to the top of the peak.
-  while (lowest > 1 && peak(lowest - 1) > peak(lowest)) --lowest;
-  return kMinHeightM + (static_cast<double>(lowest) - 0.5) * kBinM;
+  const double enough = kMinImageShare * level.samples;
+  std::vector<LevelSurface> surfaces;
+  for (std::size_t bin = kBins + kMargin - 1; bin >= kMargin; --bin) {
+    const int points = peak(bin);
+    if (points < enough || points <= std::max(peak(bin + 1), peak(bin + 2)) ||
+        points < std::max(peak(bin - 1), peak(bin - 2))) {
+      continue;
+    }
+    // Its middle: how much more the bin above holds than that below.
+    const double middle = static_cast<double>(bin - kMargin) + 0.5 +
+                          static_cast<double>(histogram[bin + 1] - histogram[bin - 1]) / points;
+    surfaces.push_back({kMinHeightM + middle * kBinM, points});
+  }
+  return surfaces;
 }
 
-// z = -height + a x + b y, by least squares with Tukey's weights and the prior.
+// By least squares with Tukey's weights and the prior.
 std::optional<FloorPlane> FitFloor(const LevelPoints& level, const FloorPrior& prior) {
-  Eigen::Vector3d plane(-prior.height_m, 0.0, 0.0);
+  Eigen::Vector3d plane = PlaneOf(prior);
   Sums sums;
   for (const double gate_m : kGatesM) {
     // Skip gates that are wide compared with the prior.
@@ -154,8 +221,20 @@ std::optional<FloorPlane> FitFloor(const LevelPoints& level, const FloorPrior& p
   FloorPlane found;
   found.up = Eigen::Vector3d(-plane[1], -plane[2], 1.0).normalized();
   found.height_m = -plane[0] * found.up.z();
-  found.points = sums.used;
+  found.points = PointsNear(level.points, found);
   return found;
+}
+
+std::optional<FloorPlane> FindFloorPlane(const LevelPoints& level, const FloorPrior& prior) {
+  const FloorPrior near{prior.height_m, kDensestM, prior.sigma_rad};
+  const std::optional<FloorPlane> untilted = FitFloor(level, near);
+  std::optional<FloorPlane> most = FitFloor(level, prior);
+  const auto densest = FitFloor(level, DensestPlane(level, prior));
+  if (densest && (!most || densest->points > most->points)) most = densest;
+  if (!most || !untilted) return untilted ? untilted : most;
+  // What has fewer points than another surface may lead to that from the floor.
+  const bool is_other = std::abs(most->height_m - prior.height_m) > MostOffM(*most);
+  return is_other || most->points <= untilted->points ? untilted : most;
 }
 
 }  // namespace depthgrid

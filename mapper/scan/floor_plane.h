@@ -49,25 +49,36 @@ void FindLevel(const PointGrid& grid, const LevelLimits& limits,
                std::vector<Eigen::Vector3f>& points);
 }  // namespace internal
 
-// Height below the camera of the lowest level surface that fills 1 % of the image and a quarter of
-// what the largest one fills; empty if there is none. A table top that hides the floor is mistaken
-// for it.
-std::optional<double> LowestSurface(const LevelPoints& level);
+// A level surface that fills 1 % of the image or more.
+struct LevelSurface {
+  double height_m = 0.0;  // below the camera
+  int points = 0;         // within 3 cm of it
+};
+
+// All of them, the lowest first. Those less than 6 cm apart count as one.
+std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level);
 
 // The floor plane expected before using the image.
 struct FloorPrior {
   double height_m = 0.0;
   double sigma_m = 0.0;
   double sigma_rad = 0.0;  // of roll and pitch
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
 };
 
-// The plane fitted to the points, in their axes: height of the camera above it and its normal.
-// Empty if too few points agree.
+// A plane in the points' axes: height of the camera above it and its normal.
 struct FloorPlane {
   double height_m = 0.0;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
-  int points = 0;  // points on it
+  int points = 0;  // within 1 cm of it
 };
+
+// Fitted to the points that agree with the prior. Empty if they are too few.
 std::optional<FloorPlane> FitFloor(const LevelPoints& level, const FloorPrior& prior);
+
+// The plane with most points, at about the prior's height, of that which FitFloor finds and the one
+// that it finds from where most points lie on a plane tilted by up to 4 degrees. What FitFloor
+// finds alone may lead from the top of a rug to the floor behind it.
+std::optional<FloorPlane> FindFloorPlane(const LevelPoints& level, const FloorPrior& prior);
 
 }  // namespace depthgrid

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <hwy/highway.h>
 
+#include "mapper/core/angle.h"
 #include "mapper/core/rng.h"
 #include "tests/mapper/analytic_room.h"
 
@@ -71,6 +72,52 @@ TEST(LevelPoints, AreThoseOfThePlainLoopBitForBit) {
     points += plain.size();
   }
   EXPECT_GE(points, 3000U);
+}
+
+// Points 2 cm apart on a level square, `height_m` below the camera and tilted about the y axis.
+void AddSquare(double x_m, double side_m, double height_m, double tilt_rad, LevelPoints& level) {
+  for (double x = x_m; x < x_m + side_m; x += 0.02) {
+    for (double y = -side_m / 2.0; y < side_m / 2.0; y += 0.02) {
+      level.points.emplace_back(x, y, -height_m + std::tan(tilt_rad) * x);
+    }
+  }
+}
+
+TEST(LevelSurfaces, AreThoseThatFillAPartOfTheImage) {
+  LevelPoints level;
+  AddSquare(1.0, 1.0, 1.2, 0.0, level);
+  AddSquare(2.0, 0.5, 0.75, 0.0, level);
+  AddSquare(2.0, 0.1, 0.4, 0.0, level);
+  level.samples = 4800;
+  const std::vector<LevelSurface> surfaces = LevelSurfaces(level);
+  ASSERT_EQ(surfaces.size(), 2U);
+  EXPECT_NEAR(surfaces[0].height_m, 1.2, 0.02);
+  EXPECT_EQ(surfaces[0].points, 2500);
+  EXPECT_NEAR(surfaces[1].height_m, 0.75, 0.02);
+  EXPECT_TRUE(LevelSurfaces({{}, 4800, {}}).empty());
+}
+
+// Half of the view is a rug; the floor before and behind it is tilted by 3 degrees.
+TEST(FloorPlanes, AreFoundBesideARug) {
+  const double tilt_rad = RadFromDeg(3.0);
+  LevelPoints level;
+  AddSquare(1.0, 1.0, 1.2, tilt_rad, level);
+  AddSquare(2.0, 1.0, 1.12, tilt_rad, level);
+  AddSquare(3.0, 1.0, 1.2, tilt_rad, level);
+  level.samples = 9600;
+  const FloorPrior prior{1.1, 0.1, RadFromDeg(2.0)};
+  const auto found = FindFloorPlane(level, prior);
+  ASSERT_TRUE(found);
+  EXPECT_NEAR(found->height_m, 1.2, 0.01);
+  EXPECT_NEAR(std::acos(found->up.z()), tilt_rad, RadFromDeg(0.2));
+  EXPECT_EQ(found->points, 5000);
+}
+
+TEST(FloorPlanes, NeedPoints) {
+  LevelPoints level;
+  level.samples = 4800;
+  EXPECT_FALSE(FitFloor(level, {1.0, 0.1, 0.03}));
+  EXPECT_FALSE(FindFloorPlane(level, {1.0, 0.1, 0.03}));
 }
 
 }  // namespace

@@ -97,9 +97,9 @@ TEST(FloorTracker, AFloorThatIsLostFromViewIsCarriedOn) {
               kCameraHeightM + 0.05, 0.005);
 }
 
-// A second in which the camera looks up and SLAM drifts in height or tilt by more than a surface
-// may be off to be the floor: when the floor comes back, it is not an obstacle for the next two
-// seconds.
+// A second in which the camera looks up and SLAM, which was seen to drift in height or tilt, goes
+// on to by more than a surface may be off to be the floor: when the floor comes back, it is not an
+// obstacle for the next two seconds.
 TEST(FloorTracker, WhatSlamDriftsMeanwhileIsMadeGoodAtOnce) {
   const PinholeCamera camera = SmallCamera();
   const Pose3 down = TiltedCamera({}, kCameraHeightM, RadFromDeg(5.0), 0.0);
@@ -117,11 +117,76 @@ TEST(FloorTracker, WhatSlamDriftsMeanwhileIsMadeGoodAtOnce) {
       pose.rotation = ExpRotation(turn) * pose.rotation;
       return pose;
     };
-    tracker.Follow(floor, down, 0);
-    for (int frame = 1; frame <= 30; ++frame) tracker.Follow(ceiling, drifted(up, frame / 30.0), 0);
-    const CameraStand stand = tracker.Follow(floor, drifted(down, 1.0), 0);
+    for (int frame = 0; frame <= 60; ++frame) tracker.Follow(floor, drifted(down, frame / 30.0), 0);
+    for (int frame = 61; frame <= 90; ++frame)
+      tracker.Follow(ceiling, drifted(up, frame / 30.0), 0);
+    // It is also looked for anew in every fourth frame.
+    for (int frame = 0; frame < 3; ++frame) tracker.Follow(floor, drifted(down, 3.0), 0);
+    const CameraStand stand = tracker.Follow(floor, drifted(down, 3.0), 0);
     EXPECT_NEAR(stand.height_m, kCameraHeightM, 0.02) << drift.height_m << " " << drift.tilt_deg;
     EXPECT_LT(TiltErrorDeg(stand, down), 1.0) << drift.height_m << " " << drift.tilt_deg;
+  }
+}
+
+// SLAM is right, and what is in view after a second of looking up is a bench as high as the camera
+// was lifted by meanwhile.
+TEST(FloorTracker, ABenchIsNotTheFloorOfALiftedCamera) {
+  const PinholeCamera camera = SmallCamera();
+  constexpr double kBenchM = 0.35;
+  FloorTracker tracker(camera, {});
+  AnalyticRoom benches = RoomWithTable();
+  benches.boxes = {{{-3.0, -6.0, 0.0}, {3.9, 6.0, kBenchM}}};
+  const auto pose = [](double lifted_m, double pitch_deg) {
+    return TiltedCamera({}, kCameraHeightM + lifted_m, RadFromDeg(pitch_deg), 0.0);
+  };
+  const DepthImage floor = RoomWithTable().Render(camera, pose(0.0, 15.0));
+  for (int frame = 0; frame < 90; ++frame) tracker.Follow(floor, pose(0.0, 15.0), 0);
+  const DepthImage ceiling = RoomWithTable().Render(camera, pose(kBenchM, -30.0));
+  for (int frame = 1; frame <= 30; ++frame) {
+    tracker.Follow(ceiling, pose(kBenchM * frame / 30.0, -30.0), 0);
+  }
+  const DepthImage bench = benches.Render(camera, pose(kBenchM, 15.0));
+  for (int frame = 0; frame < 50; ++frame) {
+    const double height_m = tracker.Follow(bench, pose(kBenchM, 15.0), 0).height_m;
+    ASSERT_NEAR(height_m, kCameraHeightM + kBenchM, 0.01) << frame;
+  }
+}
+
+// Whether the way to it is in view or not: a robot at the top of a step stays on its own floor.
+TEST(FloorTracker, ALowerFloorAheadIsNotTheFloor) {
+  const PinholeCamera camera = SmallCamera();
+  constexpr double kEdgeM = 1.5;
+  for (const double lower_m : {0.16, 0.32, 0.6}) {
+    AnalyticRoom room;
+    room.walls = {{-3.0, -6.0, -lower_m}, {6.0, 6.0, 2.5}};
+    room.boxes = {{{-3.0, -6.0, -lower_m}, {kEdgeM, 6.0, 0.0}}};
+    FloorTracker tracker(camera, {});
+    for (int frame = 0; frame < 160; ++frame) {
+      const double x_m = std::min(-2.5 + 0.03 * frame, kEdgeM - 0.3);
+      const Pose3 pose = TiltedCamera({x_m, 0.0, 0.0}, kCameraHeightM, RadFromDeg(15.0), 0.0);
+      const CameraStand stand = tracker.Follow(room.Render(camera, pose), pose, 0);
+      ASSERT_NEAR(stand.height_m, kCameraHeightM, 0.01) << lower_m << " " << frame;
+      ASSERT_LT(TiltErrorDeg(stand, pose), 0.3) << lower_m << " " << frame;
+    }
+  }
+}
+
+// A plane from the top of a rug that fills half of the view to the floor behind it has points of
+// both near it.
+TEST(FloorTracker, NoPlaneLeadsFromARugToTheFloorBehindIt) {
+  const PinholeCamera camera = SmallCamera();
+  RandomStream random(11, RandomStage::kTest);
+  for (const double thick_m : {0.08, 0.12}) {
+    AnalyticRoom room = RoomWithTable();
+    room.boxes = {{{0.5, -2.0, 0.0}, {2.6, 1.0, thick_m}}};
+    const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
+    const DepthImage exact = room.Render(camera, pose);
+    FloorTracker tracker(camera, {});
+    for (int frame = 0; frame < 60; ++frame) {
+      const CameraStand stand = tracker.Follow(WithFloorNoise(exact, random), pose, 0);
+      ASSERT_NEAR(stand.height_m, kCameraHeightM, 0.015) << thick_m << " " << frame;
+      ASSERT_LT(TiltErrorDeg(stand, pose), 0.4) << thick_m << " " << frame;
+    }
   }
 }
 
@@ -174,7 +239,7 @@ TEST(FloorTracker, SlamsJumpsAreFollowedAtLast) {
 }
 
 // In a new epoch SLAM's heights mean something else: what was seen before them does not keep the
-// floor from being found where it is, at once.
+// floor from being found where it is, within a few frames.
 TEST(FloorTracker, ANewEpochBeginsAnew) {
   const PinholeCamera camera = SmallCamera();
   const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
@@ -185,6 +250,7 @@ TEST(FloorTracker, ANewEpochBeginsAnew) {
   const DepthImage higher_up = RoomWithTable().Render(camera, raised);
   Pose3 in_new_epoch = raised;
   in_new_epoch.translation.z() += 7.0;
+  for (int frame = 0; frame < 4; ++frame) tracker.Follow(higher_up, in_new_epoch, 1);
   EXPECT_NEAR(tracker.Follow(higher_up, in_new_epoch, 1).height_m, kCameraHeightM + 0.3, 0.01);
 }
 
