@@ -42,6 +42,8 @@ constexpr double kDensestM = 0.03;
 // this and than its tilt explains for points this far away.
 constexpr double kOtherM = 0.04;
 constexpr double kUsualDistanceM = 3.5;
+// The fit is better than what has most points by chance, so that needs this many times as many.
+constexpr double kManyMorePoints = 1.25;
 // Points this near to a plane lie on it.
 constexpr float kNearM = 0.01F;
 // A plane tilted by more than this from the expected one is not the floor.
@@ -180,7 +182,8 @@ LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
   return memory;
 }
 
-std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level) {
+std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level,
+                                        std::vector<LevelSurface> memory) {
   constexpr std::size_t kMargin = 3;  // empty bins at either end
   std::array<int, kBins + 2 * kMargin> histogram{};
   for (const Eigen::Vector3f& point : level.points) {
@@ -191,7 +194,7 @@ std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level) {
     return histogram[bin - 1] + histogram[bin] + histogram[bin + 1];
   };
   const double enough = kMinImageShare * level.samples;
-  std::vector<LevelSurface> surfaces;
+  memory.clear();
   for (std::size_t bin = kBins + kMargin - 1; bin >= kMargin; --bin) {
     const int points = peak(bin);
     if (points < enough || points <= std::max(peak(bin + 1), peak(bin + 2)) ||
@@ -201,9 +204,9 @@ std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level) {
     // Its middle: how much more the bin above holds than that below.
     const double middle = static_cast<double>(bin - kMargin) + 0.5 +
                           static_cast<double>(histogram[bin + 1] - histogram[bin - 1]) / points;
-    surfaces.push_back({kMinHeightM + middle * kBinM, points});
+    memory.push_back({kMinHeightM + middle * kBinM, points});
   }
-  return surfaces;
+  return memory;
 }
 
 // By least squares with Tukey's weights and the prior.
@@ -226,15 +229,21 @@ std::optional<FloorPlane> FitFloor(const LevelPoints& level, const FloorPrior& p
 }
 
 std::optional<FloorPlane> FindFloorPlane(const LevelPoints& level, const FloorPrior& prior) {
-  const FloorPrior near{prior.height_m, kDensestM, prior.sigma_rad};
-  const std::optional<FloorPlane> untilted = FitFloor(level, near);
-  std::optional<FloorPlane> most = FitFloor(level, prior);
+  const auto is_other = [&](const FloorPlane& plane) {
+    return std::abs(plane.height_m - prior.height_m) > MostOffM(plane);
+  };
+  std::optional<FloorPlane> best = FitFloor(level, prior);
+  const auto untilted = FitFloor(level, {prior.height_m, kDensestM, prior.sigma_rad});
   const auto densest = FitFloor(level, DensestPlane(level, prior));
-  if (densest && (!most || densest->points > most->points)) most = densest;
-  if (!most || !untilted) return untilted ? untilted : most;
+  for (const std::optional<FloorPlane>& plane : {untilted, densest}) {
+    if (!plane || is_other(*plane)) continue;
+    if (!best || plane->points > kManyMorePoints * best->points) best = plane;
+  }
   // What has fewer points than another surface may lead to that from the floor.
-  const bool is_other = std::abs(most->height_m - prior.height_m) > MostOffM(*most);
-  return is_other || most->points <= untilted->points ? untilted : most;
+  const bool leads_away = best && densest && untilted && is_other(*densest) &&
+                          densest->points > best->points &&
+                          std::abs(best->height_m - prior.height_m) > kOtherM;
+  return leads_away ? untilted : best;
 }
 
 }  // namespace depthgrid

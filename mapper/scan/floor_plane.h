@@ -56,7 +56,8 @@ struct LevelSurface {
 };
 
 // All of them, the lowest first. Those less than 6 cm apart count as one.
-std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level);
+std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level,
+                                        std::vector<LevelSurface> memory = {});
 
 // The floor plane expected before using the image.
 struct FloorPrior {
@@ -76,9 +77,9 @@ struct FloorPlane {
 // Fitted to the points that agree with the prior. Empty if they are too few.
 std::optional<FloorPlane> FitFloor(const LevelPoints& level, const FloorPrior& prior);
 
-// The plane with most points, at about the prior's height, of that which FitFloor finds and the one
-// that it finds from where most points lie on a plane tilted by up to 4 degrees. What FitFloor
-// finds alone may lead from the top of a rug to the floor behind it.
+// What FitFloor finds, unless many more points at about the prior's height lie on what it finds
+// from the prior's plane alone or from the plane, tilted by up to 4 degrees, on which most points
+// lie. FitFloor alone may lead from the top of a rug to the floor behind it.
 std::optional<FloorPlane> FindFloorPlane(const LevelPoints& level, const FloorPrior& prior);
 
 }  // namespace depthgrid

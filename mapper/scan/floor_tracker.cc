@@ -177,11 +177,11 @@ void FloorTracker::Leave() {
   left_since_ = left_frames_ = 0;
 }
 
-bool FloorTracker::GoesBack(const std::vector<LevelSurface>& surfaces, const LevelSurface* own,
-                            const Pose3& slam_from_camera, double expected_m) {
+bool FloorTracker::GoesBack(const LevelSurface* own, const Pose3& slam_from_camera,
+                            double expected_m) {
   if (!left_ || ++left_since_ > kFramesToForget) return false;
   const double left_m = StandOver(left_->plane, slam_from_camera).height_m;
-  const LevelSurface* there = Nearest(surfaces, left_m, kNearM);
+  const LevelSurface* there = Nearest(surfaces_, left_m, kNearM);
   const std::size_t own_cells = floor_.trodden.Count(), left_cells = left_->trodden.Count();
   const bool more_likely = own && left_m < expected_m ? left_cells >= own_cells + kMoreCellsOfStand
                                                       : own_cells < left_cells + kMoreCellsOfStand;
@@ -197,9 +197,9 @@ std::optional<FloorPlane> FloorTracker::FindFloor(const Pose3& slam_from_camera,
   double expected_m = expected.height_m;
   const Eigen::Quaterniond level_from_slam =
       expected.level_from_camera * slam_from_camera.rotation.conjugate();
-  const std::vector<LevelSurface> surfaces = LevelSurfaces(memory_);
-  if (surfaces.empty()) return {};
-  const LevelSurface& lowest = Lowest(surfaces);
+  surfaces_ = LevelSurfaces(memory_, std::move(surfaces_));
+  if (surfaces_.empty()) return {};
+  const LevelSurface& lowest = Lowest(surfaces_);
   const bool pose_is_height = expected_m > kLeastPoseHeightM && expected_m < kMostPoseHeightM;
   const auto wide = [](const LevelSurface& surface) {
     return FloorPrior{surface.height_m, kFirstSigmaM, kFirstSigmaRad};
@@ -209,10 +209,10 @@ std::optional<FloorPlane> FloorTracker::FindFloor(const Pose3& slam_from_camera,
     return FindFloorPlane(memory_, wide(lowest));
   }
   const double posed_m = slam_from_camera.translation.z() + posed_offset_m_;
-  const LevelSurface* own = Nearest(surfaces, expected_m, seen_ ? kNearM : kNearPoseM);
-  if (GoesBack(surfaces, own, slam_from_camera, expected_m)) {
+  const LevelSurface* own = Nearest(surfaces_, expected_m, seen_ ? kNearM : kNearPoseM);
+  if (GoesBack(own, slam_from_camera, expected_m)) {
     expected_m = StandOver(floor_.plane, slam_from_camera).height_m;
-    own = Nearest(surfaces, expected_m, kNearM);
+    own = Nearest(surfaces_, expected_m, kNearM);
     return own ? FindFloorPlane(memory_, wide(*own)) : std::nullopt;
   }
   if (!own && IsAsLastSeen(lowest.height_m, expected_m)) {

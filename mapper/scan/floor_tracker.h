@@ -60,8 +60,7 @@ class FloorTracker {
   // enough to take it for the floor. `expected_m` of the floor, `posed_m` if the poses are right.
   bool IsBelieved(double height_m, double expected_m, double posed_m);
   // Goes back to what was taken for the floor before if that is in view and more likely.
-  bool GoesBack(const std::vector<LevelSurface>& surfaces, const LevelSurface* own,
-                const Pose3& slam_from_camera, double expected_m);
+  bool GoesBack(const LevelSurface* own, const Pose3& slam_from_camera, double expected_m);
   void Leave();  // keeps the floor in mind as what was taken for it before
   // Where the image shows what is and what was taken for the floor.
   void Note(const Pose3& slam_from_camera, const Eigen::Quaterniond& slam_from_level);
@@ -84,6 +83,7 @@ class FloorTracker {
   std::optional<double> floor_height_m_;  // camera height of the last frame that saw the floor
   StandDrift drift_;
   LevelPoints memory_;
+  std::vector<LevelSurface> surfaces_;  // of the last image
 };
 
 }  // namespace depthgrid
