@@ -41,7 +41,7 @@ constexpr double kDensestM = 0.03;
 // A plane is another surface than that at the expected height if its height differs by more than
 // this and than its tilt explains for points this far away.
 constexpr double kOtherM = 0.04;
-constexpr double kUsualDistanceM = 3.5;
+constexpr double kUsualDistanceM = 3.0;
 // The fit is better than what has most points by chance, so that needs this many times as many.
 constexpr double kManyMorePoints = 1.25;
 // Points this near to a plane lie on it.
@@ -233,6 +233,7 @@ std::optional<FloorPlane> FindFloorPlane(const LevelPoints& level, const FloorPr
     return std::abs(plane.height_m - prior.height_m) > MostOffM(plane);
   };
   std::optional<FloorPlane> best = FitFloor(level, prior);
+  if (best && is_other(*best)) best.reset();
   const auto untilted = FitFloor(level, {prior.height_m, kDensestM, prior.sigma_rad});
   const auto densest = FitFloor(level, DensestPlane(level, prior));
   for (const std::optional<FloorPlane>& plane : {untilted, densest}) {
