@@ -234,6 +234,10 @@ std::optional<FloorPlane> FindFloorPlane(const LevelPoints& level, const FloorPr
   };
   std::optional<FloorPlane> best = FitFloor(level, prior);
   if (best && is_other(*best)) best.reset();
+  // No plane can have many more points: on an even floor, mostly.
+  if (best && kManyMorePoints * best->points >= static_cast<double>(level.points.size())) {
+    return best;
+  }
   const auto untilted = FitFloor(level, {prior.height_m, kDensestM, prior.sigma_rad});
   const auto densest = FitFloor(level, DensestPlane(level, prior));
   for (const std::optional<FloorPlane>& plane : {untilted, densest}) {

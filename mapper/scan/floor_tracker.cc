@@ -160,7 +160,10 @@ std::optional<FloorPlane> FloorTracker::Followed(const LevelSurface& surface, do
                        const FloorPlane& other) {
     return one && one->points >= share * other.points;
   };
-  const auto anew = FindFloorPlane(memory_, wide);
+  // Where nearly all points lie on it none can be better.
+  const bool has_all =
+      plane && kMorePoints * plane->points >= static_cast<double>(memory_.points.size());
+  const auto anew = has_all ? std::nullopt : FindFloorPlane(memory_, wide);
   if (!drift_.IsSlow()) return anew && !has(1.0 / kMorePoints, plane, *anew) ? anew : plane;
   const double share = Stands() ? kStandShare : kUsualShare;
   const auto usual = FitFloor(memory_, {expected_m, kStepSigmaM, kUsualSigmaRad, usual_up});
