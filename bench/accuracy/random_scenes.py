@@ -8,8 +8,8 @@ several forms and heights. The path leads between random places in it, 30 or 60 
 high) or hand-held. Camera, depth noise, its artifacts, SLAM profile, drift, loops and losses are drawn as well. FOLDER
 keeps the scenes (sI.yaml), paths (sI.path.txt), experiments (sI.run.yaml), the results of each run (sI.out) and those
 of earlier calls; the arguments behind -- go to depthgrid run. The same number gives the same scene and settings.
---uneven: floors with rugs, platforms, ramps and lower parts, and SLAM that drifts as it does. docs/results.md, "Random
-rooms".
+--uneven: floors with rugs, platforms, ramps and lower parts, the drift of the SLAM profile itself and no losses; files
+are uI. docs/results.md, "Random rooms".
 """
 import csv
 import json
@@ -37,8 +37,8 @@ class Room(buildings.Building):
         self.ceiling = float(self.look.uniform(2.3, 3.2))
         super().__init__(number)
         width, length, wall = self.width, self.height, 0.2
-        for z in (-0.1, self.ceiling):
-            self.add_box(width + 1, length + 1, 0.1, width / 2, length / 2, z)
+        self.add_floor()
+        self.add_box(width + 1, length + 1, 0.1, width / 2, length / 2, self.ceiling)
         for x0, y0, x1, y1 in [(-wall, -wall, width + wall, 0), (-wall, length, width + wall, length + wall),
                                (-wall, 0, 0, length), (width, 0, width + wall, length)]:
             self.add_block(x0, y0, x1, y1)
@@ -46,6 +46,9 @@ class Room(buildings.Building):
     def add_box(self, sx, sy, sz, x, y, z, yaw_rad=0.0):
         self.shapes.append(f"{{shape: box, size: [{sx:.4f}, {sy:.4f}, {sz:.4f}], at: [{x:.4f}, {y:.4f}, {z:.4f}], "
                            f"yaw_deg: {math.degrees(yaw_rad):.3f}}}")
+
+    def add_floor(self):
+        self.add_box(self.width + 1, self.height + 1, 0.1, self.width / 2, self.height / 2, -0.1)
 
     def add_block(self, x0, y0, x1, y1):
         self.add_box(x1 - x0, y1 - y0, self.ceiling, (x0 + x1) / 2, (y0 + y1) / 2, 0)
@@ -95,11 +98,8 @@ class Room(buildings.Building):
 class UnevenRoom(Room):
     """One with rugs, platforms, ramps and lower floors beside the way; over a rug of up to 12 cm it also leads."""
 
-    def __init__(self, number):
-        super().__init__(number)
-        look = self.look
-        self.shapes.pop(next(k for k, shape in enumerate(self.shapes) if "-0.1000]" in shape))
-        holes = []
+    def add_floor(self):
+        look, holes = self.look, []
         for kind in look.choice(["rug", "platform", "ramp", "lower"], size=2, replace=False):
             for _ in range(int(look.integers(1, 3))):
                 sx, sy = look.uniform(0.8, 3, 2)
@@ -117,7 +117,7 @@ class UnevenRoom(Room):
                 else:
                     holes.append((x, y, sx, sy, look.uniform(0.08, 0.6)))
                 self.add_polygon(corners(sx, sy, x, y, 0.0))
-        self.add_floor(holes)
+        self.lay_around(holes)
 
     def add_ramp(self, sx, sy, degrees, x, y):
         """Up along x, its upper edge a drop."""
@@ -125,8 +125,8 @@ class UnevenRoom(Room):
         self.shapes.append(f"{{shape: prism, outline: [[0, 0], [{sx:.4f}, 0], [{sx:.4f}, {rise:.4f}]], "
                            f"height_m: {sy:.4f}, at: [{x - sx / 2:.4f}, {y + sy / 2:.4f}, 0], rpy_deg: [90, 0, 0]}}")
 
-    def add_floor(self, holes):
-        """In strips from hole to hole."""
+    def lay_around(self, holes):
+        """The floor in strips from hole to hole, and the lower floors."""
         cuts = sorted({-0.5, self.width + 0.5, *(x + side * sx / 2 for x, _, sx, _, _ in holes for side in (-1, 1))})
         for x0, x1 in zip(cuts, cuts[1:]):
             across = [(y, sy) for x, y, sx, sy, _ in holes if abs((x0 + x1) / 2 - x) < sx / 2]
@@ -183,7 +183,7 @@ def camera_path(poses, drawn, number):
             k / buildings.RATE_HZ, x, y, drawn["height"] + up[k], *quaternion(about_z @ about_y @ about_x @ OPTICAL))
 
 
-def settings_of(number):
+def settings_of(number, uneven):
     chance = random.Random(number * 1000 + 7)
     camera, noise = chance.choice([("icl_nuim", "handa"), ("tum_fr1", "nguyen"), ("d435", "d435"),
                                    ("kinect_v2", "kinect_v2"), ("azure", "azure"), ("kinect_v1", "nguyen")])
@@ -193,15 +193,18 @@ def settings_of(number):
     height = chance.uniform(0.9, 1.5) if hand else chance.uniform(0.25, 1.2)
     pitch = chance.choice([0, -5, -15, 5])
     measured = profile.endswith(("measured", "desk"))
-    return {"camera": camera, "noise": noise, "hand": hand, "profile": profile, "height": height, "pitch": pitch,
-            "drift_scale": chance.choice([None, 1, 3] if measured else [None, 5, 15, 40]),
-            "scenario": chance.choice([None, None, "none", "late", "missed", "false"]),
-            "flying": chance.choice([0, 0, 0.3]), "shadow": chance.choice([0, 0.075]),
-            "alike": chance.choice([0, 0, 3]), "lost": chance.choice([0, 0, 0, 0.02])}
+    drawn = {"camera": camera, "noise": noise, "hand": hand, "profile": profile, "height": height, "pitch": pitch,
+             "drift_scale": chance.choice([None, 1, 3] if measured else [None, 5, 15, 40]),
+             "scenario": chance.choice([None, None, "none", "late", "missed", "false"]),
+             "flying": chance.choice([0, 0, 0.3]), "shadow": chance.choice([0, 0.075]),
+             "alike": chance.choice([0, 0, 3]), "lost": chance.choice([0, 0, 0, 0.02])}
+    if uneven:
+        drawn.update(drift_scale=None, lost=0)
+    return drawn
 
 
-def experiment(number, drawn):
-    lines = [f"scene: ./s{number}.yaml", f"trajectory: ./s{number}.path.txt", f"seed: {number + 1}",
+def experiment(number, scene, drawn):
+    lines = [f"scene: ./{scene}.yaml", f"trajectory: ./{scene}.path.txt", f"seed: {number + 1}",
              f"sensor: {{camera: {drawn['camera']}, noise: {drawn['noise']}, flying_pixels: {drawn['flying']}, "
              f"shadow_baseline_m: {drawn['shadow']}, noise_correlation_px: {drawn['alike']}}}",
              "slam:", f"  profile: {drawn['profile']}"]
@@ -215,18 +218,18 @@ def experiment(number, drawn):
     return "".join(line + "\n" for line in lines)
 
 
-def write_scene(number, folder, drawn, uneven):
+def write_scene(number, folder, scene, drawn, uneven):
     # every third building is one of 20 to 45 m
     room = (UnevenRoom if uneven else Room)(number if number % 3 != 2 else number + 1)
     poses = buildings.way_through(room)
     if poses is None:
         return False
-    with buildings.written(f"{folder}/s{number}.yaml") as file:
+    with buildings.written(f"{folder}/{scene}.yaml") as file:
         file.write("floor_z_m: 0\nshapes:\n" + "".join(f"  - {shape}\n" for shape in room.shapes))
-    with buildings.written(f"{folder}/s{number}.path.txt") as file:
+    with buildings.written(f"{folder}/{scene}.path.txt") as file:
         file.writelines(camera_path(poses[:MOST_FRAMES], drawn, number))
-    with buildings.written(f"{folder}/s{number}.run.yaml") as file:
-        file.write(experiment(number, drawn))
+    with buildings.written(f"{folder}/{scene}.run.yaml") as file:
+        file.write(experiment(number, scene, drawn))
     return True
 
 
@@ -251,17 +254,16 @@ def main():
     program, folder, numbers, uneven, more = command
     rows = []
     for number in numbers:
-        drawn, name = settings_of(number), f"{folder}/s{number}"
-        if uneven:
-            drawn.update(drift_scale=None, lost=0)
-        if not os.path.exists(name + ".run.yaml") and not write_scene(number, folder, drawn, uneven):
+        drawn, scene = settings_of(number, uneven), f"{'u' if uneven else 's'}{number}"
+        name = f"{folder}/{scene}"
+        if not os.path.exists(name + ".run.yaml") and not write_scene(number, folder, scene, drawn, uneven):
             continue
         done = subprocess.run([program, "run", name + ".run.yaml", "-o", name + ".out", "--force", *more],
                               capture_output=True, text=True, check=False)
         if done.returncode != 0:
             return buildings.refuse(done.stderr.strip())
         rows.append(scores_of(name + ".out"))
-        print(f"s{number}", *(f"{key} {value}" for key, value in drawn.items()),
+        print(scene, *(f"{key} {value}" for key, value in drawn.items()),
               "slam %.4f online %.4f final %.4f f1 %.3f height off %.3f" % tuple(rows[-1]), flush=True)
     if not rows:
         return buildings.refuse("no building has room for a way")

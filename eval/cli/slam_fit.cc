@@ -113,8 +113,8 @@ std::string LagTable(const std::vector<LagError>& measured, const std::vector<La
 std::vector<std::string> DoubtOfFit(const std::vector<LagError>& measured,
                                     const std::vector<LagError>& imitated, double tracked_s,
                                     const std::string& place) {
-  constexpr double kPoorFactor =
-      1.5;  // over such lags the fits of docs/slam_surrogate.md reach 1.3
+  // Over such lags the fits of docs/slam_surrogate.md reach 1.3.
+  constexpr double kPoorFactor = 1.5;
   constexpr double kFewestMotions = 20.0;  // of which a root mean square is known to 16 %
   constexpr double kLeastM = 1e-3, kLeastDeg = 0.05;  // smaller errors are of no account
   double worst = kPoorFactor;

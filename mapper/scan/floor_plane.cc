@@ -39,7 +39,8 @@ constexpr double kPointsPerWitness = 10.0;
 // The plane on which most points lie is known to a few centimetres.
 constexpr double kDensestM = 0.03;
 // A plane is another surface than that at the expected height if its height differs by more than
-// this and than its tilt explains for points this far away.
+// this and than its tilt explains for points this far away (a floor is mostly seen from 1.5 to 5
+// m).
 constexpr double kOtherM = 0.04;
 constexpr double kUsualDistanceM = 3.0;
 // The fit is better than what has most points by chance, so that needs this many times as many.
@@ -117,10 +118,11 @@ double MostOffM(const FloorPlane& plane) {
 // The plane on which most points lie, of those at most kMostOffM from the expected height and
 // tilted by whole degrees (a Hough transform), as a prior.
 FloorPrior DensestPlane(const LevelPoints& level, const FloorPrior& expected) {
-  constexpr int kDegrees = 4;
-  constexpr std::size_t kPoints = 400;
-  constexpr float kMostOffM = 0.24F, kThickM = 0.01F;
+  constexpr int kDegrees = 4;           // twice the sigma of a first tilt (floor_tracker.cc)
+  constexpr std::size_t kPoints = 400;  // of all, evenly chosen
+  constexpr float kThickM = 0.01F;      // two slices are as thick as what counts as near a plane
   constexpr int kSlices = 48;
+  constexpr float kMostOffM = 0.24F;  // half of all slices
   const std::size_t every = std::max<std::size_t>(1, level.points.size() / kPoints);
   const auto top = -static_cast<float>(expected.height_m) - kMostOffM;
   FloorPrior densest{expected.height_m, kDensestM, expected.sigma_rad};

@@ -63,8 +63,8 @@ std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level,
 struct FloorPrior {
   double height_m = 0.0;
   double sigma_m = 0.0;
-  double sigma_rad = 0.0;  // of roll and pitch
-  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  double sigma_rad = 0.0;                         // of roll and pitch
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();  // its normal, in the points' axes
 };
 
 // A plane in the points' axes: height of the camera above it and its normal.

@@ -28,8 +28,8 @@ constexpr int kFramesToBelieveHigher = 60;
 // above the floor when last seen, the surface is believed only if it stays very long.
 constexpr int kFramesToBelieveAnything = 600;
 constexpr double kTableM = 0.3;
-// The camera stands on what it has passed over for this many cells; of two surfaces on that which
-// has this many more.
+// The camera stands on what it has passed over for this many cells, a robot's length; of two
+// surfaces on that which has this many more: a table has fewer along its edge. Both are choices.
 constexpr std::size_t kCellsOfStand = 3;
 constexpr std::size_t kMoreCellsOfStand = 8;
 // One in so many points of the floor is noted as trodden.
@@ -52,13 +52,16 @@ constexpr double kFirstSigmaRad = RadFromDeg(2.0);
 constexpr int kFramesToLookAnew = 4;
 constexpr double kMorePoints = 1.1;
 // Where a ramp meets the floor, what fits both draws a narrow prior along. So a plane tilted as it
-// usually is, in the last 10 s, is taken if it has this share of the points.
+// usually is, in the last 10 s, is taken if it has this share of the points: a floor beside a ramp
+// had .43 (docs/tried.md, "Heights and tilts").
 constexpr double kUsualShare = 0.6;
 constexpr double kStandShare = 0.4;  // if the camera stands on it
 // It may be off by this much, and by what SLAM drifts meanwhile.
 constexpr double kSameRad = RadFromDeg(0.3);
 constexpr double kUsualSigmaRad = RadFromDeg(0.1);
 constexpr double kFramesOfUsual = 300.0;
+
+FloorPrior WideAt(double height_m) { return {height_m, kFirstSigmaM, kFirstSigmaRad}; }
 
 // The lowest of the larger surfaces. A table top that hides the floor is mistaken for it.
 const LevelSurface& Lowest(const std::vector<LevelSurface>& surfaces) {
@@ -138,10 +141,10 @@ CameraStand FloorTracker::Follow(const DepthImage& image, const Pose3& slam_from
   return stand;
 }
 
-std::optional<FloorPlane> FloorTracker::TiltedFloor(const FloorPrior& wide,
+std::optional<FloorPlane> FloorTracker::TiltedFloor(const LevelSurface& surface,
                                                     double expected_m) const {
-  if (!seen_ || std::abs(wide.height_m - expected_m) > kNearPoseM) return {};
-  const std::optional<FloorPlane> plane = FindFloorPlane(memory_, wide);
+  if (!seen_ || std::abs(surface.height_m - expected_m) > kNearPoseM) return {};
+  const std::optional<FloorPlane> plane = FindFloorPlane(memory_, WideAt(surface.height_m));
   if (!plane || !drift_.CanTilt(std::acos(plane->up.z()))) return {};
   const bool is_expected = std::abs(plane->height_m - expected_m) <= kTiltedM ||
                            IsAsLastSeen(plane->height_m, expected_m);
@@ -150,7 +153,7 @@ std::optional<FloorPlane> FloorTracker::TiltedFloor(const FloorPrior& wide,
 
 std::optional<FloorPlane> FloorTracker::Followed(const LevelSurface& surface, double expected_m,
                                                  const Eigen::Vector3d& usual_up) {
-  const FloorPrior wide{surface.height_m, kFirstSigmaM, kFirstSigmaRad};
+  const FloorPrior wide = WideAt(surface.height_m);
   if (!seen_ || std::abs(surface.height_m - expected_m) > kNearM) {
     return FindFloorPlane(memory_, wide);
   }
@@ -180,8 +183,8 @@ void FloorTracker::Leave() {
   left_since_ = left_frames_ = 0;
 }
 
-bool FloorTracker::GoesBack(const LevelSurface* own, const Pose3& slam_from_camera,
-                            double expected_m) {
+bool FloorTracker::GoBack(const LevelSurface* own, const Pose3& slam_from_camera,
+                          double expected_m) {
   if (!left_ || ++left_since_ > kFramesToForget) return false;
   const double left_m = StandOver(left_->plane, slam_from_camera).height_m;
   const LevelSurface* there = Nearest(surfaces_, left_m, kNearM);
@@ -204,19 +207,16 @@ std::optional<FloorPlane> FloorTracker::FindFloor(const Pose3& slam_from_camera,
   if (surfaces_.empty()) return {};
   const LevelSurface& lowest = Lowest(surfaces_);
   const bool pose_is_height = expected_m > kLeastPoseHeightM && expected_m < kMostPoseHeightM;
-  const auto wide = [](const LevelSurface& surface) {
-    return FloorPrior{surface.height_m, kFirstSigmaM, kFirstSigmaRad};
-  };
   if (!seen_ && !pose_is_height) {
     posed_off_m_ = std::numeric_limits<double>::infinity();
-    return FindFloorPlane(memory_, wide(lowest));
+    return FindFloorPlane(memory_, WideAt(lowest.height_m));
   }
   const double posed_m = slam_from_camera.translation.z() + posed_offset_m_;
   const LevelSurface* own = Nearest(surfaces_, expected_m, seen_ ? kNearM : kNearPoseM);
-  if (GoesBack(own, slam_from_camera, expected_m)) {
+  if (GoBack(own, slam_from_camera, expected_m)) {
     expected_m = StandOver(floor_.plane, slam_from_camera).height_m;
     own = Nearest(surfaces_, expected_m, kNearM);
-    return own ? FindFloorPlane(memory_, wide(*own)) : std::nullopt;
+    return own ? FindFloorPlane(memory_, WideAt(own->height_m)) : std::nullopt;
   }
   if (!own && IsAsLastSeen(lowest.height_m, expected_m)) {
     Leave();
@@ -230,10 +230,10 @@ std::optional<FloorPlane> FloorTracker::FindFloor(const Pose3& slam_from_camera,
     floor_.trodden = other_.trodden;
     other_frames_ = 0;
     posed_off_m_ = std::abs(lowest.height_m - posed_m);
-    return FindFloorPlane(memory_, wide(lowest));
+    return FindFloorPlane(memory_, WideAt(lowest.height_m));
   }
   if (!own) {
-    const std::optional<FloorPlane> tilted = TiltedFloor(wide(lowest), expected_m);
+    const std::optional<FloorPlane> tilted = TiltedFloor(lowest, expected_m);
     if (tilted) other_frames_ = 0;
     return tilted;
   }

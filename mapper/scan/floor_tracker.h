@@ -50,7 +50,7 @@ class FloorTracker {
                                      const Eigen::Vector3d& usual_up);
   // The plane of a surface at an unexpected height, if only SLAM's tilt made it one: with the tilt
   // that it shows, the camera is as high above it as expected.
-  std::optional<FloorPlane> TiltedFloor(const FloorPrior& wide, double expected_m) const;
+  std::optional<FloorPlane> TiltedFloor(const LevelSurface& surface, double expected_m) const;
   // Whether the camera has passed over the floor.
   bool Stands() const;
   // Whether the camera is as high as when the floor was seen last, and SLAM, which says otherwise,
@@ -59,8 +59,9 @@ class FloorTracker {
   // Counts how often in a row a surface was seen at an unexpected height; whether that is now often
   // enough to take it for the floor. `expected_m` of the floor, `posed_m` if the poses are right.
   bool IsBelieved(double height_m, double expected_m, double posed_m);
-  // Goes back to what was taken for the floor before if that is in view and more likely.
-  bool GoesBack(const LevelSurface* own, const Pose3& slam_from_camera, double expected_m);
+  // Goes back to what was taken for the floor before if that is in view and more likely; whether it
+  // did.
+  bool GoBack(const LevelSurface* own, const Pose3& slam_from_camera, double expected_m);
   void Leave();  // keeps the floor in mind as what was taken for it before
   // Where the image shows what is and what was taken for the floor.
   void Note(const Pose3& slam_from_camera, const Eigen::Quaterniond& slam_from_level);

@@ -8,6 +8,7 @@
 namespace depthgrid {
 namespace {
 
+// The limits are choices; docs/tried.md, "Heights and tilts", has what others gave.
 // What is seen of the floor's height and tilt is uncertain by this much.
 constexpr double kUnsureM = 0.05;
 constexpr double kUnsureRad = RadFromDeg(1.0);
@@ -16,7 +17,7 @@ constexpr double kUnsureRad = RadFromDeg(1.0);
 constexpr double kTimesAsFast = 3.0;
 constexpr double kPerFrameM = 0.0006;
 constexpr double kPerFrameRad = RadFromDeg(0.02);
-// A rise or fall by more in one frame is a jump of SLAM.
+// A rise or fall by more in one frame is a jump of SLAM: 3 m/s at 30 Hz.
 constexpr double kMostStepM = 0.1;
 constexpr double kSlowRad = RadFromDeg(0.03);  // in a frame
 constexpr int kFramesOfWindow = 60;

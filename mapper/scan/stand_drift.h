@@ -11,7 +11,7 @@ class StandDrift {
   // A frame begins; SLAM moved the camera up by `rise_m` since the last one.
   void Step(double rise_m);
   // The floor is in view: how much higher above it the camera is than was expected, and the normal
-  // of its plane less the expected one.
+  // of its plane less the expected one, in SLAM's frame.
   void Seen(double height_off_m, const Eigen::Vector3d& up_off);
   // Heights have another zero: anything is possible until the floor is seen.
   void Forget() { jumped_ = true; }
