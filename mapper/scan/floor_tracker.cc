@@ -101,6 +101,11 @@ bool FloorTracker::IsAsLastSeen(double height_m, double expected_m) const {
          drift_.CanBe(std::abs(height_m - expected_m));
 }
 
+bool FloorTracker::IsAsHigh(double height_m, double expected_m) const {
+  const double off_m = std::abs(height_m - expected_m);
+  return off_m <= kTiltedM || drift_.CanBe(off_m);
+}
+
 bool FloorTracker::IsBelieved(double height_m, double expected_m, double posed_m) {
   const double other_m = expected_m + other_.plane.offset_m - floor_.plane.offset_m;
   if (other_frames_ == 0 || std::abs(height_m - other_m) > kNearM) {
@@ -166,8 +171,10 @@ std::optional<FloorPlane> FloorTracker::Followed(const LevelSurface& surface, do
   // Where nearly all points lie on it none can be better.
   const bool has_all =
       plane && kMorePoints * plane->points >= static_cast<double>(memory_.points.size());
-  const auto anew = has_all ? std::nullopt : FindFloorPlane(memory_, wide);
+  auto anew = has_all ? std::nullopt : FindFloorPlane(memory_, wide);
   if (!drift_.IsSlow()) return anew && !has(1.0 / kMorePoints, plane, *anew) ? anew : plane;
+  // A plane from the floor to a table has more points than either, but not the camera's height.
+  if (anew && !IsAsHigh(anew->height_m, expected_m)) anew.reset();
   const double share = Stands() ? kStandShare : kUsualShare;
   const auto usual = FitFloor(memory_, {expected_m, kStepSigmaM, kUsualSigmaRad, usual_up});
   // Drawn away, as where a ramp begins?
@@ -189,8 +196,10 @@ bool FloorTracker::GoBack(const LevelSurface* own, const Pose3& slam_from_camera
   const double left_m = StandOver(left_->plane, slam_from_camera).height_m;
   const LevelSurface* there = Nearest(surfaces_, left_m, kNearM);
   const std::size_t own_cells = floor_.trodden.Count(), left_cells = left_->trodden.Count();
-  const bool more_likely = own && left_m < expected_m ? left_cells >= own_cells + kMoreCellsOfStand
-                                                      : own_cells < left_cells + kMoreCellsOfStand;
+  // What is higher was a table, unless the camera stood on it.
+  const std::size_t more_cells = own ? kMoreCellsOfStand : kCellsOfStand;
+  const bool more_likely = left_m < expected_m ? left_cells >= own_cells + more_cells
+                                               : own_cells < left_cells + kMoreCellsOfStand;
   left_frames_ = there && there != own && more_likely ? left_frames_ + 1 : 0;
   if (left_frames_ < kFramesToBelieveLower) return false;
   std::swap(floor_, *left_);

@@ -223,6 +223,45 @@ TEST(FloorTracker, ATableThatStaysInViewIsNotTheFloor) {
   EXPECT_NEAR(height_m, kCameraHeightM - 0.45, 0.005);
 }
 
+// The plane along the edges of steps has more points than the rest of the floor, but the camera is
+// not as high above it as SLAM, right for three seconds, says.
+TEST(FloorTracker, NoPlaneLeadsFromTheFloorUpSteps) {
+  const PinholeCamera camera = SmallCamera();
+  RandomStream random(12, RandomStage::kTest);
+  AnalyticRoom room;
+  room.walls = {{-3.0, -6.0, 0.0}, {2.7, 6.0, 2.5}};
+  AnalyticRoom steps = room;  // three that rise towards the camera
+  steps.boxes = {{{1.6, -6.0, 0.0}, {2.2, 6.0, 0.05}},
+                 {{1.1, -6.0, 0.0}, {1.6, 6.0, 0.1}},
+                 {{0.5, -6.0, 0.0}, {1.1, 6.0, 0.15}}};
+  FloorTracker tracker(camera, {});
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(20.0), 0.0);
+  const DepthImage floor = room.Render(camera, pose), stepped = steps.Render(camera, pose);
+  for (int frame = 0; frame < 90; ++frame) {
+    tracker.Follow(WithFloorNoise(floor, random), pose, 0);
+  }
+  for (int frame = 0; frame < 60; ++frame) {
+    const CameraStand stand = tracker.Follow(WithFloorNoise(stepped, random), pose, 0);
+    ASSERT_NEAR(stand.height_m, kCameraHeightM, 0.03) << frame;
+  }
+}
+
+// It was the floor until the floor was seen; in view alone again it is not.
+TEST(FloorTracker, ATableIsNotGoneBackTo) {
+  const PinholeCamera camera = SmallCamera();
+  FloorTracker tracker(camera, {});
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
+  const Pose3 lower = TiltedCamera({}, kCameraHeightM - 0.3, RadFromDeg(15.0), 0.0);  // as told
+  const DepthImage hidden = RoomUnderTable().Render(camera, pose);
+  const DepthImage seen = RoomWithTable().Render(camera, pose);
+  for (int frame = 0; frame < 90; ++frame) tracker.Follow(hidden, lower, 0);
+  ASSERT_NEAR(tracker.Follow(hidden, lower, 0).height_m, kCameraHeightM - 0.45, 0.005);
+  for (int frame = 0; frame < 90; ++frame) tracker.Follow(seen, lower, 0);
+  for (int frame = 0; frame < 90; ++frame) {
+    ASSERT_NEAR(tracker.Follow(hidden, lower, 0).height_m, kCameraHeightM, 0.005) << frame;
+  }
+}
+
 TEST(FloorTracker, SlamsJumpsAreFollowedAtLast) {
   const PinholeCamera camera = SmallCamera();
   const Pose3 pose = TiltedCamera({}, kCameraHeightM, RadFromDeg(15.0), 0.0);
