@@ -17,6 +17,13 @@ constexpr std::array<double, 4> kBiasFrames = {10.0, 40.0, 160.0, 640.0};
 // Least number of independent stretches for a lag to be used.
 constexpr double kMinStretches = 3.0;
 constexpr int kParts = 3;
+// Variance of the product of two errors n1 - n0 and n2 - n1, of unit noise, with twice its
+// covariance with the next such product: 5 + 2.
+constexpr double kProductVariance = 7.0;
+// Jitter told by such products is believed less this many of its own sigmas.
+constexpr double kSureSigmas = 2.0;
+// Of the first class of matches; each has twice the variance of the one before.
+constexpr double kLeastMatchVariance = 1e-12;
 // Upper bound of learnt noise, as a multiple of the spread (docs/tried.md, "A nearly perfect
 // prior").
 constexpr double kMostOfSpread = 2.0;
@@ -127,8 +134,10 @@ void MotionNoiseLearner::Add(const Eigen::Vector3d& error, const Eigen::Vector3d
     Axis& axis = axes_[static_cast<std::size_t>(i)];
     if (!(match_sigma[i] < kSeenSigma[i])) {
       axis.run = 0;
+      axis.last.reset();
       continue;
     }
+    AddPair({error[i], match_sigma[i] * match_sigma[i]}, axis);
     axis.match_variance += match_sigma[i] * match_sigma[i];
     ++axis.matches;
     axis.summed_error[static_cast<std::size_t>(axis.run % kRing)] = axis.total;
@@ -150,6 +159,7 @@ void MotionNoiseLearner::AddStanding(const Eigen::Vector3d& error,
                                      const Eigen::Vector3d& match_sigma) {
   for (int i = 0; i < 3; ++i) {
     Axis& axis = axes_[static_cast<std::size_t>(i)];
+    axis.last.reset();
     if (match_sigma[i] < kSeenSigma[i]) {
       axis.total += error[i];
     } else {
@@ -173,7 +183,45 @@ void MotionNoiseLearner::AddMatches(const Pose2& motion, bool stands, const Matc
 }
 
 void MotionNoiseLearner::Break() {
-  for (Axis& axis : axes_) axis.run = 0;
+  for (Axis& axis : axes_) {
+    axis.run = 0;
+    axis.last.reset();
+  }
+}
+
+void MotionNoiseLearner::AddPair(const Motion& motion, Axis& axis) {
+  if (axis.last) {
+    const int exponent = std::ilogb(std::max(axis.last->match_variance, kLeastMatchVariance));
+    const int place = std::clamp(exponent - std::ilogb(kLeastMatchVariance), 0, kClasses - 1);
+    MatchClass& one = axis.classes[static_cast<std::size_t>(place)];
+    one.products -= axis.last->error * motion.error;
+    one.match_variance += axis.last->match_variance;
+    one.count += 1.0;
+  }
+  axis.last = motion;
+}
+
+// Each class tells the jitter's variance with a variance of kProductVariance (match variance +
+// jitter variance)^2 / count. Matches that see little claim a larger error than they have, since
+// what they do not see they take from the prediction, so in the mean of all of them nothing may be
+// left.
+double MotionNoiseLearner::JitterVariance(const Axis& axis, double shared_bias) {
+  constexpr int kRounds = 10;  // the weights depend on what is sought
+  double jitter = 0.0;
+  for (int round = 0; round < kRounds; ++round) {
+    double sum = 0.0, weights = 0.0;
+    for (const MatchClass& one : axis.classes) {
+      if (one.count == 0.0) continue;
+      const double match = std::max(one.match_variance / one.count, kLeastMatchVariance);
+      const double weight = one.count / ((match + jitter) * (match + jitter));
+      sum += weight * (one.products / one.count - match);
+      weights += weight;
+    }
+    if (weights == 0.0) return 0.0;
+    const double sigma = std::sqrt(kProductVariance / weights);
+    jitter = std::max(sum / weights + shared_bias - kSureSigmas * sigma, 0.0);
+  }
+  return jitter;
 }
 
 std::optional<MotionNoiseLearner::AxisNoise> MotionNoiseLearner::FitAxis(const Axis& axis) const {
@@ -202,7 +250,8 @@ std::optional<MotionNoiseLearner::AxisNoise> MotionNoiseLearner::FitAxis(const A
   }
   // The variance includes the matches' own.
   const double match_variance = axis.match_variance / std::max(axis.matches, 1);
-  noise.jitter = std::sqrt(std::max(best.variance[0] - match_variance, 0.0));
+  noise.jitter = std::sqrt(std::max(best.variance[0] - match_variance,
+                                    JitterVariance(axis, best.variance[2] * noise.kept)));
   noise.walk = std::sqrt(best.variance[1]);
   noise.bias = std::sqrt(best.variance[2]);
   return noise;

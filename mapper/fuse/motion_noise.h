@@ -37,7 +37,8 @@ MotionErrors ErrorsOver(int frames, const MotionNoise& noise);
 void Bound(const MotionSpread& spread, MotionNoise& noise);
 
 // The variances of the error summed over n = 1, 2, 4, ... frames separate the three parts: constant
-// for jitter, growing with n for a walk, and with n^2 for a bias until it has changed.
+// for jitter, growing with n for a walk, and with n^2 for a bias until it has changed. The matches'
+// noise is constant too; the best matches tell how much of it is jitter.
 class MotionNoiseLearner {
  public:
   // `error`: SLAM's motion against that between two matches, in base axes. `match_sigma`: of the
@@ -61,7 +62,16 @@ class MotionNoiseLearner {
  private:
   static constexpr int kLags = 11;  // up to 1024 frames
   static constexpr int kRing = 1 << (kLags - 1);
+  static constexpr int kClasses = 32;
 
+  // Motion pairs that share a match, of those with about the same variance of that match.
+  struct MatchClass {
+    double products = 0.0, match_variance = 0.0;  // sums; of the two motions' errors, negated
+    double count = 0.0;
+  };
+  struct Motion {
+    double error = 0.0, match_variance = 0.0;  // of the match at its end
+  };
   struct Axis {
     std::array<double, kLags> sum_squares{};
     std::array<double, kLags> count{};
@@ -70,11 +80,16 @@ class MotionNoiseLearner {
     int run = 0;  // motions without a break
     double match_variance = 0.0;
     int matches = 0;
+    std::optional<Motion> last;  // unless the next motion does not begin where it ended
+    std::array<MatchClass, kClasses> classes{};
   };
   struct AxisNoise {
     double jitter = 0.0, walk = 0.0, bias = 0.0, kept = 0.0;
   };
   std::optional<AxisNoise> FitAxis(const Axis& axis) const;
+  static void AddPair(const Motion& motion, Axis& axis);
+  // By pairs of motions; `shared_bias`: the covariance that the bias gives two motions in a row.
+  static double JitterVariance(const Axis& axis, double shared_bias);
 
   std::array<Axis, 3> axes_;
   int motions_ = 0;

@@ -30,6 +30,35 @@ TEST(MotionNoiseLearner, TellsJitterWalkAndBiasApart) {
   EXPECT_LT(noise.jitter[1], 5e-4);
 }
 
+// What a match does not see it takes from SLAM, so there it shows less of SLAM's jitter than it
+// has, and claims to err by far more.
+TEST(MotionNoiseLearner, BelievesGoodMatchesAboutJitter) {
+  RandomStream random(14, RandomStage::kTest);
+  MotionNoiseLearner learner;
+  double before = 0.0;
+  for (int i = 0; i < 4000; ++i) {
+    const bool sees = i / 50 % 2 == 0;
+    const double match_sigma = sees ? 0.0002 : 0.01;
+    const double jitter = 0.001 * random.Normal();
+    const double off = sees ? jitter + match_sigma * random.Normal() : 0.1 * jitter;
+    learner.Add(Eigen::Vector3d::Constant(off - before), Eigen::Vector3d::Constant(match_sigma));
+    before = off;
+  }
+  EXPECT_NEAR(learner.Fit().jitter[0], 0.001, 1.5e-4);
+}
+
+TEST(MotionNoiseLearner, TakesTheNoiseOfMatchesForNoJitter) {
+  RandomStream random(15, RandomStage::kTest);
+  MotionNoiseLearner learner;
+  double before = 0.0;
+  for (int i = 0; i < 4000; ++i) {
+    const double off = 0.002 * random.Normal();
+    learner.Add(Eigen::Vector3d::Constant(off - before), Eigen::Vector3d::Constant(0.002));
+    before = off;
+  }
+  EXPECT_LT(learner.Fit().jitter[0], 5e-4);
+}
+
 TEST(MotionNoise, IsBoundBySpread) {
   const MotionSpread spread{{0.001, 0.001, 0.001}, 4.0};
   MotionNoise noise;

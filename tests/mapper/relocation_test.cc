@@ -302,12 +302,12 @@ Worst WorstOfShortLoss(MapperMethod method, std::uint64_t seed) {
 }
 
 // Nothing ties what comes after to what came before but SLAM's own word: few walls are seen from
-// both sides of the loss. What single runs are off by at worst has a standard deviation of .03 m,
-// with the paper's method of .07: of a dozen the mean would be chance by .02.
+// both sides of the loss. What single runs are off by at worst is .086 m in the mean of 300 seeds,
+// with a standard deviation of .03 m, with the paper's method of .07.
 TEST(ShortLoss, SlamIsTakenAtItsWordWhereNothingSpeaksAgainstIt) {
   constexpr int kSeeds = 60;
   for (const auto& [method, most_m] :
-       {std::pair(MapperMethod::kSurfel, 0.08), std::pair(MapperMethod::kPaper, 0.13)}) {
+       {std::pair(MapperMethod::kSurfel, 0.1), std::pair(MapperMethod::kPaper, 0.13)}) {
     Worst mean;
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
       const Worst worst = WorstOfShortLoss(method, seed);
