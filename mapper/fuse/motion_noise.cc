@@ -22,7 +22,8 @@ constexpr int kParts = 3;
 constexpr double kProductVariance = 7.0;
 // Jitter told by such products is believed less this many of its own sigmas.
 constexpr double kSureSigmas = 2.0;
-// Of the first class of matches; each has twice the variance of the one before.
+// Of the first class of matches, 1 um or 1 urad; each has twice the variance of the one before, the
+// last more than that of kSeenSigma.
 constexpr double kLeastMatchVariance = 1e-12;
 // Upper bound of learnt noise, as a multiple of the spread (docs/tried.md, "A nearly perfect
 // prior").

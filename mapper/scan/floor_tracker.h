@@ -56,7 +56,8 @@ class FloorTracker {
   // Whether the camera is as high as when the floor was seen last, and SLAM, which says otherwise,
   // can have drifted by that much meanwhile.
   bool IsAsLastSeen(double height_m, double expected_m) const;
-  // Whether SLAM can have drifted by that much since the floor was seen last.
+  // Whether a plane this far below the camera can be the floor, by what SLAM can have drifted since
+  // that was seen last.
   bool IsAsHigh(double height_m, double expected_m) const;
   // Counts how often in a row a surface was seen at an unexpected height; whether that is now often
   // enough to take it for the floor. `expected_m` of the floor, `posed_m` if the poses are right.
