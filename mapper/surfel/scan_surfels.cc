@@ -7,6 +7,9 @@
 namespace depthgrid {
 namespace {
 
+// Cosine of the incidence (60 degrees) beyond which a line runs along the beams rather than across.
+constexpr double kAlongBeams = 0.5;
+
 // False for a fit that does not intersect its end beams within any sensor's range, and for one that
 // spans half a turn, as with a few beams all round.
 bool WasSeen(const ScanLine& line, const ScanReturns& returns) {
@@ -30,6 +33,9 @@ void ScanSurfelOptions::Visit(OptionsVisitor& v) {
   v.Number("min_line_beams", min_line_beams, {3, 1000}, "lines of fewer beams are left out");
   v.Flag("judge_fit", judge_fit,
          "whether a line that fits its beams worse than their noise explains is believed less");
+  v.Number("edge_misfit", edge_misfit, {0.0, 1e6},
+           "a line along the beams, too short to be split, is taken for an edge and left out where "
+           "it fits worse than this many times what noise explains; 0 leaves out none");
   v.Flag("skip_alike", skip_alike,
          "whether beams that err as their neighbours do, as far as scans show, are left out");
   v.Flag("correct_cutoff", correct_cutoff,
@@ -42,8 +48,10 @@ std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& no
   std::vector<Surfel> surfels = std::move(memory);
   surfels.clear();
   returns_.Read(scan, noise, stride);
+  // Where beams err as their neighbours do, walls misfit as well.
+  const bool drops_edges = options_.edge_misfit > 0.0 && noise.stride() == 1;
   for (const ScanLine& line : lines_.Find(returns_)) {
-    if (!WasSeen(line, returns_)) continue;
+    if (!WasSeen(line, returns_) || (drops_edges && IsEdge(line))) continue;
     for (int begin = line.span.begin; begin < line.span.end;) {
       const int end = begin + BeamsAt(line, begin);
       surfels.push_back(SurfelOf(line, {begin, end}));
@@ -51,6 +59,18 @@ std::vector<Surfel> ScanSurfelMaker::Make(const Scan& scan, const RangeNoise& no
     }
   }
   return surfels;
+}
+
+// A few beams before an edge and a few behind it, on one line: its normal lies across the beams,
+// where it claims the precision that their ranges have along it, a tenth of sigma at 84 degrees.
+// But where between two beams the edge lies, and which of them noise put before it, the ranges do
+// not tell.
+bool ScanSurfelMaker::IsEdge(const ScanLine& line) const {
+  if (line.span.size() >= 2 * options_.min_line_beams) return false;  // could have been split
+  if (line.variance_factor <= options_.edge_misfit) return false;
+  const Eigen::Vector2d middle =
+      (returns_[line.span.begin].direction + returns_[line.span.end - 1].direction).normalized();
+  return line.coefficients.dot(middle) < kAlongBeams * line.coefficients.norm();
 }
 
 // Number of beams of the surfel that starts at `begin`: the rest of the line is divided equally.

@@ -19,6 +19,9 @@ struct ScanSurfelOptions {
   int min_line_beams = 4;
   // Reduce the information of surfels whose line fits its beams badly.
   bool judge_fit = true;
+  // Lines too short to be cut that run along the beams and misfit by more than this factor
+  // (ScanLine::variance_factor) are edges, and left out; 0: none.
+  double edge_misfit = 4.0;
   // Where neighbouring beams share their errors, use only every RangeNoise::stride()-th beam.
   bool skip_alike = true;
   // Correct returns near the sensor's reach for those that noise pushed beyond it.
@@ -43,6 +46,7 @@ class ScanSurfelMaker {
   }
 
  private:
+  bool IsEdge(const ScanLine& line) const;
   int BeamsAt(const ScanLine& line, int begin) const;
   Surfel SurfelOf(const ScanLine& line, Span span) const;
 

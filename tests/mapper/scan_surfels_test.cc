@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 #include "mapper/core/median.h"
+#include "mapper/core/rng.h"
 #include "mapper/surfel/range_noise.h"
 #include "tests/mapper/planar_world.h"
 
@@ -87,9 +89,11 @@ TEST(ScanSurfels, OfWhatIsNoLineAreBelievedLess) {
   world.push_back({{1.04, -0.006}, {1.0, 0.0}});
   world.push_back({{1.0, 0.0}, {1.04, 0.006}});
   RangeNoise noise;
-  ScanSurfelOptions blind_options;
+  ScanSurfelOptions options;
+  options.edge_misfit = 0.0;
+  ScanSurfelOptions blind_options = options;
   blind_options.judge_fit = false;
-  ScanSurfelMaker judging({});
+  ScanSurfelMaker judging(options);
   ScanSurfelMaker blind(blind_options);
   std::vector<double> on_wall;
   std::vector<double> on_post;
@@ -109,6 +113,49 @@ TEST(ScanSurfels, OfWhatIsNoLineAreBelievedLess) {
   ASSERT_GT(on_post.size(), 10U);
   EXPECT_GT(UpperMedian(on_post), 20.0);
   EXPECT_LT(UpperMedian(on_wall), 1.2);
+}
+
+constexpr double kPanelBeamRad = 0.0016;
+
+// A panel of 300 beams 3.6 m away with gaps of two beams through which the wall 0.2 m behind it is
+// seen, and beside it a wall that recedes at 84 degrees of incidence.
+Scan PanelWithGaps(std::uint64_t seed) {
+  Scan scan;
+  RandomStream random(seed, RandomStage::kTest);
+  const auto add = [&](double range_m) {
+    const double bearing_rad = kPanelBeamRad * static_cast<double>(scan.beams.size());
+    const auto noisy_m = static_cast<float>(range_m + 0.01 * random.Normal());
+    scan.beams.push_back({static_cast<float>(bearing_rad), noisy_m, 0.0F, noisy_m, true});
+  };
+  for (int i = 0; i < 300; ++i) add(i % 25 == 11 || i % 25 == 12 ? 3.75 : 3.6);
+  for (int i = 0; i < 40; ++i) add(1.0 / (1.0 / 3.6 - 0.004 * i));
+  return scan;
+}
+
+TEST(ScanSurfels, BeamsOnBothSidesOfAnEdgeAreNoWall) {
+  RangeNoise noise;
+  for (std::uint64_t seed = 0; seed < 30; ++seed) noise.Add(PanelWithGaps(seed));
+  ASSERT_EQ(noise.stride(), 1);
+  ScanSurfelOptions options;
+  const auto along_beams = [&](int from, int to) {
+    int count = 0;
+    for (std::uint64_t seed = 100; seed < 120; ++seed) {
+      for (const Surfel& surfel : ScanSurfelMaker(options).Make(PanelWithGaps(seed), noise)) {
+        const double bearing_rad = std::atan2(surfel.point_m.y(), surfel.point_m.x());
+        if (bearing_rad < kPanelBeamRad * from || bearing_rad >= kPanelBeamRad * to) continue;
+        count += std::abs(surfel.normal.dot(surfel.point_m.normalized())) < 0.5 ? 1 : 0;
+      }
+    }
+    return count;
+  };
+  const int left = along_beams(0, 280);
+  const int on_wall = along_beams(300, 340);
+  options.edge_misfit = 0.0;
+  const int all = along_beams(0, 280);
+  EXPECT_GT(all, 100);
+  EXPECT_LT(left, 0.25 * all);
+  EXPECT_GT(on_wall, 300);
+  EXPECT_EQ(on_wall, along_beams(300, 340));
 }
 
 // A ring of so few beams that one line is laid through the walls all round.
