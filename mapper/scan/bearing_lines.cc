@@ -103,11 +103,4 @@ BearingLineTable BearingLines(const PinholeCamera& camera,
   return lines;
 }
 
-bool ShowsHorizon(const BearingLineTable& lines) {
-  const BearingLine ahead = lines[lines.size() / 2];
-  if (ahead.first_row > ahead.last_row) return false;
-  const auto height_at = [&](int row) { return ahead.g0 + ahead.g1 * static_cast<float>(row); };
-  return height_at(ahead.first_row) * height_at(ahead.last_row) <= 0.0F;
-}
-
 }  // namespace depthgrid

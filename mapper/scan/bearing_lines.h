@@ -76,9 +76,6 @@ BearingLineTable BearingLines(const PinholeCamera& camera,
                               const std::vector<Bearing>& bearings, bool transposed,
                               BearingLineTable memory = {});
 
-// Whether the horizon straight ahead is in the image; not so for a camera that looks below it.
-bool ShowsHorizon(const BearingLineTable& lines);
-
 namespace internal {
 // The camera of the (possibly transposed) image: rows of the matrix are forward, left and up of a
 // ray (a, b, 1), a along the image's columns and b along its rows.

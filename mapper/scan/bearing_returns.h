@@ -24,12 +24,16 @@ struct ReturnLimits {
   int last_row = 0;
 };
 
-// A second, thin band around the camera's height.
+// A second, thin band, usually around the camera's height.
 struct SliceBand {
-  float low_m = 0.0F;   // relative to the camera, not positive
-  float high_m = 0.0F;  // not negative
+  float low_m = 0.0F;  // relative to the camera
+  float high_m = 0.0F;
   // Limit of SteadyRange(); 0: treat the band as one surface.
   float agree_sigmas = 0.0F;
+
+  // The core, the inner half of its heights.
+  float CoreLowM() const { return 0.5F * (low_m + high_m) - 0.25F * (high_m - low_m); }
+  float CoreHighM() const { return 0.5F * (low_m + high_m) + 0.25F * (high_m - low_m); }
 };
 
 // Image rows; empty if first > last.

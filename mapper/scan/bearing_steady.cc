@@ -47,8 +47,8 @@ HWY_INLINE Vec RowAtSlope(const BearingLineBlock& lines, std::size_t at, Vec slo
 HWY_INLINE CoreRows CoreRowsOf(const BearingLineBlock& lines, std::size_t at,
                                const SliceBand& slice, Vec range) {
   const Floats d;
-  const Vec a = RowAtSlope(lines, at, hn::Div(hn::Set(d, 0.5F * slice.high_m), range));
-  const Vec b = RowAtSlope(lines, at, hn::Div(hn::Set(d, 0.5F * slice.low_m), range));
+  const Vec a = RowAtSlope(lines, at, hn::Div(hn::Set(d, slice.CoreHighM()), range));
+  const Vec b = RowAtSlope(lines, at, hn::Div(hn::Set(d, slice.CoreLowM()), range));
   const Mask ordered = hn::Lt(a, b);
   return {hn::IfThenElse(ordered, a, b), hn::IfThenElse(ordered, b, a)};
 }

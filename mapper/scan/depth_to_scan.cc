@@ -92,11 +92,10 @@ Scan ScanOf(const DepthImage& image, const Band& band, std::vector<BlockHits>& h
   return scan;
 }
 
-// Options for a slice: with a floor `half_height_m` below the camera, the band from 0 to twice
-// that.
-ScanOptions SliceOptions(ScanOptions options, double half_height_m) {
+// Options for a slice, with the camera `-low_m` above a floor that begins where the slice does.
+ScanOptions SliceOptions(ScanOptions options, const SliceHeights& slice) {
   options.band_low_m = 0.0;
-  options.band_high_m = 2.0 * half_height_m;
+  options.band_high_m = slice.high_m - slice.low_m;
   return options;
 }
 
@@ -134,15 +133,15 @@ Scan DepthToScan::Convert(const DepthImage& depth, const CameraStand& stand) con
 }
 
 ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& stand,
-                                  double slice_half_height_m, ScanMemory& memory,
+                                  const SliceHeights& slice, ScanMemory& memory,
                                   ScanPair scans) const {
   const Reading reading = ReadingOf(depth, camera_, stand, options_.beams, memory);
   const NoiseWindow window(depth, memory.noise);
   const ReturnLimits limits =
       LimitsOf(options_, camera_, reading.transposed, stand.height_m, window);
-  const ScanOptions slice_options = SliceOptions(options_, slice_half_height_m);
+  const ScanOptions slice_options = SliceOptions(options_, slice);
   const ReturnLimits slice_limits =
-      LimitsOf(slice_options, camera_, reading.transposed, slice_half_height_m, window);
+      LimitsOf(slice_options, camera_, reading.transposed, -slice.low_m, window);
   ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
                                       SliceBand{slice_limits.low_m, slice_limits.high_m,
                                                 static_cast<float>(options_.slice_agree_sigmas)},
@@ -150,8 +149,8 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
   FindViews(memory.lines, returns.views, memory.views);
   return {ScanOf(*reading.image, {options_, limits, stand.height_m}, returns.obstacles, memory,
                  std::move(scans.obstacles)),
-          ScanOf(*reading.image, {slice_options, slice_limits, slice_half_height_m}, returns.slice,
-                 memory, std::move(scans.slice)),
+          ScanOf(*reading.image, {slice_options, slice_limits, -slice.low_m}, returns.slice, memory,
+                 std::move(scans.slice)),
           window};
 }
 

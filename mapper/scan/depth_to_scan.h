@@ -34,6 +34,12 @@ struct ScanMemory {
   BeamNumbers beams;
 };
 
+// The heights of a level slice above the camera's centre; `low_m` may be positive, `high_m`
+// negative.
+struct SliceHeights {
+  double low_m = 0.0, high_m = 0.0;
+};
+
 class DepthToScan {
  public:
   // Throws InputError for options that contradict each other and for a camera that has distortion
@@ -46,10 +52,10 @@ class DepthToScan {
   Scan Convert(const DepthImage& depth, const Pose3& slam_from_camera) const {
     return Convert(depth, StandOf(slam_from_camera, options_.floor_z_m));
   }
-  // Convert(), and the same for a slice of this half height around the camera, reading the image
-  // once. `scans`: an earlier result whose memory is reused.
-  ScanPair ConvertBoth(const DepthImage& depth, const CameraStand& stand,
-                       double slice_half_height_m, ScanMemory& memory, ScanPair scans = {}) const;
+  // Convert(), and the same for a slice, reading the image once. `scans`: an earlier result
+  // whose memory is reused.
+  ScanPair ConvertBoth(const DepthImage& depth, const CameraStand& stand, const SliceHeights& slice,
+                       ScanMemory& memory, ScanPair scans = {}) const;
 
   // For drawing the scan over the image it came from: the pixel (u, v) of each beam's hit, (-1, -1)
   // for beams without.

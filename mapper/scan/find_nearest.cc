@@ -41,8 +41,8 @@ struct CoreRows {
 };
 
 CoreRows CoreRowsAt(const BearingLine& line, const SliceBand& slice, float range_m) {
-  const float a = RowAtSlope(line, 0.5F * slice.high_m / range_m);
-  const float b = RowAtSlope(line, 0.5F * slice.low_m / range_m);
+  const float a = RowAtSlope(line, slice.CoreHighM() / range_m);
+  const float b = RowAtSlope(line, slice.CoreLowM() / range_m);
   return a < b ? CoreRows{a, b} : CoreRows{b, a};
 }
 

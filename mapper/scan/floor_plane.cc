@@ -19,11 +19,14 @@ constexpr float kSteepestSlope = 0.4F;
 // Rows are prefetched this far ahead: the hardware prefetcher does not follow strides of several
 // rows.
 constexpr int kRowsAhead = 2;
-// Camera heights considered: hand-held and robot-mounted.
-constexpr float kMinHeightM = 0.1F;
+// Camera heights considered: hand-held and robot-mounted. Bins are counted from the usual least
+// height; those of a camera below it are negative.
+constexpr float kUsualLeastHeightM = 0.1F;
 constexpr float kMaxHeightM = 3.0F;
 constexpr float kBinM = 0.02F;
 constexpr int kBins = 145;
+constexpr int kLowBins = 3;
+constexpr float kLeastHeightM = kUsualLeastHeightM - kLowBins * kBinM;
 // Farther floor is seen at a grazing angle and measured badly.
 constexpr float kMaxDistanceM = 5.0F;
 // A peak of three bins counts as a surface if it has this share of all samples.
@@ -162,7 +165,8 @@ void PointGrid::Resize(int row_count, int column_count) {
 }
 
 LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
-                          const Eigen::Quaterniond& level_from_camera, LevelPoints memory) {
+                          const Eigen::Quaterniond& level_from_camera, LevelPoints memory,
+                          bool is_low) {
   const int step = std::max(1, std::max(image.width_px, image.height_px) / kSamplesAcross);
   const int columns = image.width_px / step;
   const int rows = image.height_px / step;
@@ -179,7 +183,8 @@ LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
   memory.samples = rows * columns;
   memory.points.clear();
   internal::FindLevel(memory.grid,
-                      {kMinHeightM, kMaxHeightM, kMaxDistanceM, kSteepestSlope, kSlopeSamples},
+                      {is_low ? kLeastHeightM : kUsualLeastHeightM, kMaxHeightM, kMaxDistanceM,
+                       kSteepestSlope, kSlopeSamples},
                       memory.points);
   return memory;
 }
@@ -187,26 +192,28 @@ LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
 std::vector<LevelSurface> LevelSurfaces(const LevelPoints& level,
                                         std::vector<LevelSurface> memory) {
   constexpr std::size_t kMargin = 3;  // empty bins at either end
-  std::array<int, kBins + 2 * kMargin> histogram{};
+  constexpr std::size_t kZero = kMargin + kLowBins;
+  std::array<int, kZero + kBins + kMargin> histogram{};
   for (const Eigen::Vector3f& point : level.points) {
-    const int bin = static_cast<int>((-point.z() - kMinHeightM) / kBinM);
-    ++histogram[static_cast<std::size_t>(std::clamp(bin, 0, kBins - 1)) + kMargin];
+    const int bin = static_cast<int>(std::floor((-point.z() - kUsualLeastHeightM) / kBinM));
+    ++histogram[kMargin +
+                static_cast<std::size_t>(kLowBins + std::clamp(bin, -kLowBins, kBins - 1))];
   }
   const auto peak = [&](std::size_t bin) {  // of three bins
     return histogram[bin - 1] + histogram[bin] + histogram[bin + 1];
   };
   const double enough = kMinImageShare * level.samples;
   memory.clear();
-  for (std::size_t bin = kBins + kMargin - 1; bin >= kMargin; --bin) {
+  for (std::size_t bin = kZero + kBins - 1; bin >= kMargin; --bin) {
     const int points = peak(bin);
     if (points < enough || points <= std::max(peak(bin + 1), peak(bin + 2)) ||
         points < std::max(peak(bin - 1), peak(bin - 2))) {
       continue;
     }
     // Its middle: how much more the bin above holds than that below.
-    const double middle = static_cast<double>(bin - kMargin) + 0.5 +
+    const double middle = static_cast<double>(bin) - static_cast<double>(kZero) + 0.5 +
                           static_cast<double>(histogram[bin + 1] - histogram[bin - 1]) / points;
-    memory.push_back({kMinHeightM + middle * kBinM, points});
+    memory.push_back({kUsualLeastHeightM + middle * kBinM, points});
   }
   return memory;
 }

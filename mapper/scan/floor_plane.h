@@ -30,8 +30,10 @@ struct LevelPoints {
   PointGrid grid;  // kept for its memory
 };
 
+// From 0.1 m below the camera on, or 0.04 m if it is low; to 3 m.
 LevelPoints LevelPointsOf(const DepthImage& image, const PinholeCamera& camera,
-                          const Eigen::Quaterniond& level_from_camera, LevelPoints memory);
+                          const Eigen::Quaterniond& level_from_camera, LevelPoints memory,
+                          bool is_low = false);
 
 namespace internal {
 // Limits on level surfaces: height below the camera, distance and steepness.

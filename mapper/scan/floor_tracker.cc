@@ -15,6 +15,8 @@ namespace {
 constexpr double kNearM = 0.12;
 // Plausible heights of a pose if its z is above the floor; in recordings z often begins at 0.
 constexpr double kLeastPoseHeightM = 0.1;
+// A camera lower than this may be one of a vacuum cleaner, as may one whose height is unknown.
+constexpr double kLowM = 0.2;
 constexpr double kMostPoseHeightM = 3.0;
 // Of level surfaces, noise and skirting boards below a floor have less than this share of the
 // largest one's points.
@@ -257,7 +259,8 @@ void FloorTracker::LookAt(const DepthImage& image, const Pose3& slam_from_camera
   floor_.trodden.Pass(here);
   if (left_) left_->trodden.Pass(here);
   if (!floor_.trodden.IsSeen(here)) other_.trodden.Pass(here);
-  memory_ = LevelPointsOf(image, camera_, expected.level_from_camera, std::move(memory_));
+  memory_ = LevelPointsOf(image, camera_, expected.level_from_camera, std::move(memory_),
+                          expected.height_m < kLowM);
   const std::optional<FloorPlane> plane = FindFloor(slam_from_camera, expected);
   const Eigen::Quaterniond slam_from_level =
       slam_from_camera.rotation * expected.level_from_camera.conjugate();

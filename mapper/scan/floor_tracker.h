@@ -26,6 +26,8 @@ class FloorTracker {
   // Processes the next frame. In a new epoch, whose poses have another frame, only the camera's
   // height is kept.
   CameraStand Follow(const DepthImage& image, const Pose3& slam_from_camera, int epoch);
+  // Whether the height is more than a guess: the floor was seen, or poses are to be believed.
+  bool KnowsHeight() const { return source_ == FloorSource::kPose || height_m_; }
 
  private:
   // A plane in the frame of SLAM's poses: height = up . position + offset.

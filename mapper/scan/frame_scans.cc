@@ -58,6 +58,19 @@ std::shared_ptr<const DepthImage> SoundImage(const std::shared_ptr<const DepthIm
   return sound;
 }
 
+// Whether the horizon straight ahead is in the image.
+bool ShowsHorizon(const PinholeCamera& camera, const CameraStand& stand) {
+  const Eigen::Vector3d ahead = stand.level_from_camera.conjugate() * Eigen::Vector3d::UnitX();
+  if (!(ahead.z() > 0.0)) return false;
+  const Eigen::Vector2d pixel = Project(camera, ahead);
+  return pixel.x() >= 0.0 && pixel.x() <= camera.width_px - 1.0 && pixel.y() >= 0.0 &&
+         pixel.y() <= camera.height_px - 1.0;
+}
+
+bool LooksUp(const CameraStand& stand) {
+  return (stand.level_from_camera * Eigen::Vector3d::UnitZ()).z() > 0.0;
+}
+
 }  // namespace
 
 std::shared_ptr<Scan> ScanPool::Take() {
@@ -70,8 +83,10 @@ std::shared_ptr<Scan> ScanPool::Take() {
 FrameScanner::FrameScanner(const std::optional<PinholeCamera>& camera, const ScanOptions& options)
     // The other modes only read a few rows at the camera's height anyway.
     : slice_half_height_m_(options.mode == ScanMode::kFull ? options.slice_half_height_m : 0.0),
+      band_low_m_(options.band_low_m),
       drop_cut_ends_(options.drop_cut_ends) {
   if (!camera) return;
+  camera_ = *camera;
   converter_.emplace(*camera, options);
   floor_.emplace(*camera, options);
 }
@@ -80,6 +95,14 @@ std::shared_ptr<const Scan> FrameScanner::SoundPart(const Scan& given) {
   const std::shared_ptr<Scan> sound = pool_.Take();
   CopySound(given, *sound);
   return sound;
+}
+
+SliceHeights FrameScanner::SliceOf(const CameraStand& stand) const {
+  const double half_m = slice_half_height_m_;
+  if (!floor_->KnowsHeight()) return {-half_m, half_m};
+  const double floor_band_m = band_low_m_ - stand.height_m;
+  if (!ShowsHorizon(camera_, stand)) return {floor_band_m, floor_band_m + 2.0 * half_m};
+  return {std::clamp(floor_band_m, -half_m, 0.0), half_m};
 }
 
 FrameScans FrameScanner::ScansOf(const Frame& frame) {
@@ -97,13 +120,15 @@ FrameScans FrameScanner::ScansOf(const Frame& frame) {
     return {scan, scan, stand};
   }
   const std::shared_ptr<Scan> obstacles = pool_.Take(), slice = pool_.Take();
-  ScanPair scans = converter_->ConvertBoth(*depth, stand, slice_half_height_m_, memory_,
+  ScanPair scans = converter_->ConvertBoth(*depth, stand, SliceOf(stand), memory_,
                                            {std::move(*obstacles), std::move(*slice)});
   farthest_m_ = std::max(farthest_m_, scans.noise.farthest_m());
   if (drop_cut_ends_) DropCutEnds(scans.noise, farthest_m_, scans.slice);
   *obstacles = std::move(scans.obstacles);
   *slice = std::move(scans.slice);
-  if (!ShowsHorizon(memory_.lines)) return {obstacles, obstacles, stand};
+  if (!ShowsHorizon(camera_, stand) && (!floor_->KnowsHeight() || LooksUp(stand))) {
+    return {obstacles, obstacles, stand};
+  }
   return {obstacles, slice, stand};
 }
 

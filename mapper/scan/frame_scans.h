@@ -2,7 +2,8 @@
 // surface that is changes with the camera's tilt and distance (a table top leaves the image when
 // the camera comes near), so such scans are not rigid. A thin level slice at the camera's height,
 // the paper's "horizontal point cloud", is visible at any distance and is matched instead. If the
-// image looks below the horizon and shows next to nothing of the slice, the obstacles are matched.
+// image looks below the horizon, it shows next to nothing of that slice; then one just above the
+// floor is matched, or the obstacles where the floor is not known.
 #pragma once
 
 #include <memory>
@@ -51,11 +52,17 @@ class FrameScanner {
 
  private:
   std::shared_ptr<const Scan> SoundPart(const Scan& given);
+  // The slice to match: around the camera's height, or, where the image looks below that, above the
+  // floor. As the band of obstacles does, it ends above the floor, which a robot's camera may have
+  // closer below it than the half height: noise makes hits of it that move along.
+  SliceHeights SliceOf(const CameraStand& stand) const;
 
   SlamEpochs epochs_;
+  PinholeCamera camera_;
   std::optional<DepthToScan> converter_;
   std::optional<FloorTracker> floor_;
   double slice_half_height_m_ = 0.0;  // 0: the obstacle scan itself is matched
+  double band_low_m_ = 0.0;
   bool drop_cut_ends_ = false;
   double farthest_m_ = 0.0;  // largest NoiseWindow::farthest_m() so far
   ScanMemory memory_;

@@ -339,7 +339,7 @@ TEST(DepthToScan, ReadsWithinTheImageWhateverTheCamera) {
     const Pose3 pose =
         TiltedCamera({}, kCameraHeightM, 0.6 * random.Normal(), 0.6 * random.Normal());
     const CameraStand stand = StandOf(pose, 0.0);
-    const ScanPair scans = DepthToScan(camera, {}).ConvertBoth(depth, stand, 0.1, memory);
+    const ScanPair scans = DepthToScan(camera, {}).ConvertBoth(depth, stand, {-0.1, 0.1}, memory);
     ASSERT_FALSE(scans.obstacles.beams.empty());
   }
 }
