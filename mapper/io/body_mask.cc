@@ -28,7 +28,14 @@ constexpr double kMostFloorM = 4.0;
 constexpr int kFloorColumns = 160;
 constexpr std::size_t kLeastFloorPixels = 100;
 constexpr double kOnFloorShare = 0.07;
-constexpr int kFloorFits = 4;
+// A plane is fitted again and again to what is this near to the one before, as a share of inverse
+// depth, so that a part of the robot among the pixels does not tilt it.
+constexpr std::array<double, 5> kFitShares = {1.0, 0.2, 0.12, kOnFloorShare, kOnFloorShare};
+// What is known of a floor in front of a low camera: nothing lies beyond it where it would be this
+// near, unless by so much in depth and in so few views as noise and wobble explain.
+constexpr double kMostLowFloorM = 2.0;
+constexpr double kBeyondFloor = 1.15;
+constexpr double kLeastOutsideShare = 0.01;  // of those samples, not taken for the body itself
 
 constexpr double kMmPerM = 1000.0;
 constexpr double kFarMm = 65535.0;  // farther depths are clamped to this
@@ -40,23 +47,24 @@ struct InversePixel {
 };
 
 // `plane` is inverse depth over (column, row, 1).
-bool IsOn(const Eigen::Vector3d& plane, const Eigen::Vector3d& place, double inverse_depth) {
-  return std::abs(plane.dot(place) - inverse_depth) < kOnFloorShare * inverse_depth;
+bool IsOn(const Eigen::Vector3d& plane, const Eigen::Vector3d& place, double inverse_depth,
+          double share = kOnFloorShare) {
+  return std::abs(plane.dot(place) - inverse_depth) < share * inverse_depth;
 }
 
 Eigen::Vector3d PlaceOf(int column, int row) {
   return {static_cast<double>(column), static_cast<double>(row), 1.0};
 }
 
-// Repeated least-squares fit to the pixels on the previous plane; nothing with too few.
+// Repeated least-squares fit, at first to all pixels; nothing with too few.
 std::optional<Eigen::Vector3d> PlaneOf(const std::vector<InversePixel>& pixels) {
   std::optional<Eigen::Vector3d> plane;
-  for (int fit = 0; fit < kFloorFits; ++fit) {
+  for (const double share : kFitShares) {  // the first has no plane before it
     Eigen::Matrix3d h = Eigen::Matrix3d::Zero();
     Eigen::Vector3d g = Eigen::Vector3d::Zero();
     std::size_t count = 0;
     for (const InversePixel& pixel : pixels) {
-      if (plane && !IsOn(*plane, pixel.place, pixel.inverse)) continue;
+      if (plane && !IsOn(*plane, pixel.place, pixel.inverse, share)) continue;
       h += pixel.place * pixel.place.transpose();
       g += pixel.inverse * pixel.place;
       ++count;
@@ -65,6 +73,17 @@ std::optional<Eigen::Vector3d> PlaneOf(const std::vector<InversePixel>& pixels) 
     plane = h.ldlt().solve(g);
   }
   return plane;
+}
+
+// The pixels of the image's upper and of its lower half: the floor may be above in the image.
+using Halves = std::array<std::vector<InversePixel>, 2>;
+
+std::vector<Eigen::Vector3d> PlanesOf(const Halves& halves) {
+  std::vector<Eigen::Vector3d> planes;
+  for (const std::vector<InversePixel>& half : halves) {
+    if (const auto plane = PlaneOf(half)) planes.push_back(*plane);
+  }
+  return planes;
 }
 
 }  // namespace
@@ -112,7 +131,7 @@ BodyFinder::Middle BodyFinder::MiddleOf(std::size_t pixel) const {
 }
 
 std::vector<Eigen::Vector3d> BodyFinder::LevelPlanes() const {
-  std::array<std::vector<InversePixel>, 2> halves;  // the floor may be above in the image
+  Halves halves;
   const int step_px = std::max(1, width_px_ / kFloorColumns);
   for (int v = 0; v < height_px_; v += step_px) {
     for (int u = 0; u < width_px_; u += step_px) {
@@ -122,10 +141,39 @@ std::vector<Eigen::Vector3d> BodyFinder::LevelPlanes() const {
       halves[2 * v < height_px_ ? 0 : 1].push_back({PlaceOf(u, v), 1.0 / middle.depth_m});
     }
   }
-  std::vector<Eigen::Vector3d> planes;
-  for (const std::vector<InversePixel>& half : halves) {
-    if (const auto plane = PlaneOf(half)) planes.push_back(*plane);
+  return PlanesOf(halves);
+}
+
+bool BodyFinder::IsFloor(const Eigen::Vector3d& plane, const std::vector<Seen>& seen) const {
+  std::vector<bool> is_seen(views_mm_[0].size());
+  for (const Seen& pixel : seen) is_seen[PixelAt(pixel.column, pixel.row)] = true;
+  const int step_px = std::max(1, width_px_ / kFloorColumns);
+  std::size_t all = 0, outside = 0, beyond = 0;
+  for (int v = 0; v < height_px_; v += step_px) {
+    for (int u = 0; u < width_px_; u += step_px) {
+      const double inverse = plane.dot(PlaceOf(u, v));
+      if (inverse * kMostLowFloorM < 1.0) continue;
+      const std::size_t pixel = PixelAt(u, v);
+      for (const std::vector<std::uint16_t>& view : views_mm_) {
+        if (view[pixel] == 0) continue;
+        ++all;
+        outside += is_seen[pixel] ? 0 : 1;
+        beyond += view[pixel] / kMmPerM * inverse > kBeyondFloor ? 1 : 0;
+      }
+    }
   }
+  return static_cast<double>(outside) >= kLeastOutsideShare * static_cast<double>(all) &&
+         static_cast<double>(beyond) <= kBeyondShare * static_cast<double>(outside);
+}
+
+std::vector<Eigen::Vector3d> BodyFinder::FloorsAmong(const std::vector<Seen>& seen) const {
+  Halves halves;
+  for (const Seen& pixel : seen) {
+    halves[2 * pixel.row < height_px_ ? 0 : 1].push_back(
+        {PlaceOf(pixel.column, pixel.row), 1.0 / pixel.depth_m});
+  }
+  std::vector<Eigen::Vector3d> planes = PlanesOf(halves);
+  std::erase_if(planes, [&](const Eigen::Vector3d& plane) { return !IsFloor(plane, seen); });
   return planes;
 }
 
@@ -141,7 +189,9 @@ std::optional<BodyMask> BodyFinder::Find() const {
     }
   }
   if (seen.empty()) return {};
-  for (const Eigen::Vector3d& plane : LevelPlanes()) {
+  std::vector<Eigen::Vector3d> floors = LevelPlanes();
+  for (const Eigen::Vector3d& plane : FloorsAmong(seen)) floors.push_back(plane);
+  for (const Eigen::Vector3d& plane : floors) {
     std::erase_if(seen, [&](const Seen& pixel) {
       return IsOn(plane, PlaceOf(pixel.column, pixel.row), 1.0 / pixel.depth_m);
     });

@@ -40,9 +40,10 @@ class BodyFinder {
   // A body pixel is nearer than 1 m, measured in at least half of the views, with half of its
   // depths within 3 cm or 5 % of one depth and hardly any (5 %) beyond it. Three pixels around are
   // added. Nothing static or moving in a room looks like this, except the floor in front of a
-  // camera of constant height and tilt; so pixels in one plane with such constant pixels beyond 1 m
-  // are excluded. Nothing is returned with fewer than kFewestBodyViews views or for half the image
-  // or more.
+  // camera of constant height and tilt; so pixels are excluded that lie in one plane with such
+  // constant pixels beyond 1 m or, for a camera near the floor, in a plane beyond which nothing
+  // lies where it goes on (a robot's deck ends, and the floor is seen beyond it). Nothing is
+  // returned with fewer than kFewestBodyViews views or for half the image or more.
   std::optional<BodyMask> Find() const;
 
  private:
@@ -61,6 +62,9 @@ class BodyFinder {
   // Planes, as coefficients of inverse depth over (column, row, 1), of constant pixels beyond the
   // body's reach.
   std::vector<Eigen::Vector3d> LevelPlanes() const;
+  // The planes of constant near pixels that can be a floor.
+  std::vector<Eigen::Vector3d> FloorsAmong(const std::vector<Seen>& seen) const;
+  bool IsFloor(const Eigen::Vector3d& plane, const std::vector<Seen>& seen) const;
   BodyMask MaskOf(std::vector<Seen> seen) const;
   std::size_t PixelAt(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_px_) +

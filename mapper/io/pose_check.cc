@@ -2,26 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 #include "mapper/core/level.h"
 #include "mapper/io/camera_formats.h"
+#include "mapper/io/pose_fits.h"
 #include "mapper/io/pose_readings.h"
-#include "mapper/io/pose_track.h"
 #include "mapper/io/signed_axes.h"
 
 namespace depthgrid {
 namespace {
 
-using PoseChange = std::function<Pose3(const Pose3&)>;
-
-constexpr std::size_t kLeastPairs = 6;
 // Share of the pairs with poses as given that must have poses in another reading.
 constexpr double kLeastPairShare = 0.75;
-// Cap, so that one pair across a correction of SLAM does not dominate.
-constexpr double kMostMisfit = 0.3;
-// Margin for rounding when a sum is compared with its limit.
-constexpr double kRounding = 1.0 + 1e-9;
 // Another reading must have at most this share of the misfit. In three rooms with all SLAM profiles
 // and three recorded SLAM runs none fitted correct poses better; the correct reading of wrong poses
 // (quaternion order, inverse, 0.5 s off) had 0.06 to 0.32 of their misfit, with focal lengths 20 %
@@ -73,94 +65,21 @@ Pose3 FlippedY(const Pose3& pose) { return FlipY(pose); }
 
 const Eigen::Matrix3d kFlipY = Eigen::Vector3d(1.0, -1.0, 1.0).asDiagonal();
 
-// An interpretation of poses and camera.
-struct Attempt {
-  PoseChange change;
-  PinholeCamera camera;
-  double shift_s = 0.0;
-  DepthMeaning meaning = DepthMeaning::kZ;
-};
-
-// Computes how well the image pairs fit their poses in a reading.
-class Fits {
- public:
-  Fits(const std::vector<ImagePair>& pairs, const std::vector<SlamPose>& live,
-       const RecordingOptions& options)
-      : pairs_(pairs), track_(live, Interpolating(options)) {}
-
-  // Mean misfit. Nothing when too few pairs have poses, or as soon as it must exceed `most`: most
-  // readings are so wrong that the first pairs show it.
-  std::optional<double> Misfit(const Attempt& attempt, std::size_t least,
-                               double most = kMostMisfit) const {
-    const double most_sum = kRounding * most * static_cast<double>(pairs_.size());
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const ImagePair& pair : pairs_) {
-      if (sum > most_sum) return {};
-      const auto second_from_first = RelativeIn(pair, attempt);
-      if (!second_from_first) continue;
-      sum += std::min(kMostMisfit,
-                      MisfitOf(pair, attempt.camera, *second_from_first, attempt.meaning));
-      ++count;
-    }
-    if (count < least) return {};
-    return sum / static_cast<double>(count);
-  }
-  // Misfit as given, over only the pairs that overlap according to the poses, as in fast turns
-  // others do not overlap, which is no fault. 0 if these pairs are too few.
-  double MisfitWhereShared(const PinholeCamera& camera) const {
-    double sum = 0.0;
-    std::size_t count = 0;
-    for (const ImagePair& pair : pairs_) {
-      const auto second_from_first = RelativeIn(pair, {AsGiven, camera});
-      if (!second_from_first) continue;
-      const double misfit = MisfitOf(pair, camera, *second_from_first);
-      if (misfit == kNothingShared) continue;
-      sum += std::min(kMostMisfit, misfit);
-      ++count;
-    }
-    return count < kLeastPairs ? 0.0 : sum / static_cast<double>(count);
-  }
-  std::size_t PairsWithPoses() const {
-    return static_cast<std::size_t>(
-        std::count_if(pairs_.begin(), pairs_.end(), [&](const ImagePair& pair) {
-          return track_.At(pair.first_s).slam_from_camera &&
-                 track_.At(pair.second_s).slam_from_camera;
-        }));
-  }
-
- private:
-  // Nothing if a pose is missing or SLAM corrected itself in between.
-  std::optional<Pose3> RelativeIn(const ImagePair& pair, const Attempt& attempt) const {
-    const auto first = track_.At(pair.first_s + attempt.shift_s);
-    const auto second = track_.At(pair.second_s + attempt.shift_s);
-    const bool known = first.slam_from_camera && second.slam_from_camera;
-    if (!known || first.epoch != second.epoch) return {};
-    return Between(attempt.change(*second.slam_from_camera),
-                   attempt.change(*first.slam_from_camera));
-  }
-  static RecordingOptions Interpolating(RecordingOptions options) {
-    options.interpolate_poses = true;
-    return options;
-  }
-
-  const std::vector<ImagePair>& pairs_;
-  PoseTrack track_;
-};
-
 // The best reading among those tried so far, starting with the poses as given.
 class BestReading {
  public:
   // `least`: pairs that must have poses. `time_offset_s`: RecordingOptions' own.
-  BestReading(const Fits& fits, const PinholeCamera& camera, std::size_t least, double as_given,
+  BestReading(const PoseFits& fits, const PinholeCamera& camera, std::size_t least, double as_given,
               double time_offset_s, bool y_up)
       : fits_(fits), camera_(camera), least_(least), y_up_(y_up) {
     best_.time_offset_s = time_offset_s;
     best_.misfit = as_given;
     best_.better_misfit = as_given;
     as_given_ = best_;
+    attempt_ = {AsGiven, camera};
   }
   const PoseDoubt& doubt() const { return best_; }
+  const PoseAttempt& attempt() const { return attempt_; }
 
   // Tries other interpretations of the numbers in the file.
   void TryWritten() {
@@ -192,20 +111,20 @@ class BestReading {
   }
   void TryScales() {
     const auto scaled = [&](double scale) {
-      return Attempt{[scale](const Pose3& pose) {
-                       return Pose3{pose.rotation, scale * pose.translation};
-                     },
-                     camera_};
+      return PoseAttempt{[scale](const Pose3& pose) {
+                           return Pose3{pose.rotation, scale * pose.translation};
+                         },
+                         camera_};
     };
     TryFactors(PoseReading::kScaled, {kCoarseScale, kMostScale, 1.0}, scaled);
   }
   void TryCameras() {
     const Factors factors{kCoarseFocal, kMostFocal, kLeastFocal};
     TryFactors(PoseReading::kFocal, factors, [&](double scale) {
-      return Attempt{AsGiven, WithFocal(camera_, scale)};
+      return PoseAttempt{AsGiven, WithFocal(camera_, scale)};
     });
     TryFactors(PoseReading::kImageSize, factors, [&](double scale) {
-      return Attempt{AsGiven, OfImageSize(camera_, scale)};
+      return PoseAttempt{AsGiven, OfImageSize(camera_, scale)};
     });
   }
   // Searches one axis after the other, then finely around the best.
@@ -222,15 +141,16 @@ class BestReading {
 
  private:
   // Keeps `doubt` if the attempt's misfit is below `share` of the best so far.
-  void Try(PoseDoubt doubt, const Attempt& attempt, double share = 1.0) {
+  void Try(PoseDoubt doubt, const PoseAttempt& attempt, double share = 1.0) {
     const double less_than = share * best_.better_misfit;
-    const auto misfit = fits_.Misfit(attempt, least_, less_than);
+    const auto misfit = fits_.Mean(attempt, least_, less_than);
     if (!misfit || *misfit >= less_than) return;
     doubt.better_misfit = *misfit;
     best_ = doubt;
+    attempt_ = attempt;
   }
   // An attempt that changes the poses as written in the file (before FlipY).
-  Attempt Written(const PoseChange& change) const {
+  PoseAttempt Written(const PoseChange& change) const {
     const PoseChange as_written = y_up_ ? FlippedY : AsGiven;
     return {[=](const Pose3& pose) { return as_written(change(as_written(pose))); }, camera_};
   }
@@ -243,7 +163,7 @@ class BestReading {
     PoseDoubt doubt = as_given_;
     doubt.reading = PoseReading::kPositions;
     doubt.axes = axes;
-    Try(doubt, Written([&](const Pose3& pose) {
+    Try(doubt, Written([axes](const Pose3& pose) {
           return Pose3{pose.rotation, axes * pose.translation};
         }),
         kBetterThanAlike);
@@ -255,7 +175,9 @@ class BestReading {
                                                           : PoseReading::kAxes;
     doubt.axes = camera_from_own;
     Try(doubt,
-        {[&](const Pose3& pose) { return FromAxes(y_up_ ? FlipY(pose) : pose, camera_from_own); },
+        {[=, y_up = y_up_](const Pose3& pose) {
+           return FromAxes(y_up ? FlipY(pose) : pose, camera_from_own);
+         },
          camera_},
         kBetterThanAlike);
   }
@@ -277,7 +199,7 @@ class BestReading {
       while (k < most) {
         const double alike = kFitsAlike * best_.better_misfit;
         const auto misfit =
-            fits_.Misfit({AsGiven, camera_, best_s + (k + 1) * step_s}, least_, alike);
+            fits_.Mean({AsGiven, camera_, best_s + (k + 1) * step_s}, least_, alike);
         if (!misfit || *misfit > alike) break;
         ++k;
       }
@@ -329,20 +251,23 @@ class BestReading {
         doubt.reading = reading;
         doubt.down_rad = around_rad + k * step_rad;
         if (std::abs(doubt.down_rad) < kLeastPitchRad) continue;
-        Try(doubt,
-            {[&](const Pose3& pose) { return LookingDown(axes(pose), doubt.down_rad); }, camera_});
+        Try(doubt, {[axes, down_rad = doubt.down_rad](const Pose3& pose) {
+                      return LookingDown(axes(pose), down_rad);
+                    },
+                    camera_});
       }
     };
     look(0.0, kCoarsePitchRad, kMostPitchRad);
     if (best_.reading == reading) look(best_.down_rad, kFinePitchRad, kCoarsePitchRad);
   }
 
-  const Fits& fits_;
+  const PoseFits& fits_;
   const PinholeCamera& camera_;
   std::size_t least_;
   bool y_up_;
   PoseDoubt as_given_;
   PoseDoubt best_;
+  PoseAttempt attempt_;  // of the best
 };
 
 bool AllAlike(const std::vector<SlamPose>& live, double (*apart)(const Pose3&, const Pose3&)) {
@@ -374,11 +299,11 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
                                       const PinholeCamera& camera,
                                       const std::vector<SlamPose>& live,
                                       const RecordingOptions& options, bool y_up) {
-  const Fits fits(pairs, live, options);
+  const PoseFits fits(pairs, live, options);
   const std::size_t usable = fits.PairsWithPoses();
-  if (usable < kLeastPairs) return {};
+  if (usable < PoseFits::kLeastPairs) return {};
   const auto least = static_cast<std::size_t>(kLeastPairShare * static_cast<double>(usable));
-  const auto as_given = fits.Misfit({AsGiven, camera}, least);
+  const auto as_given = fits.Mean({AsGiven, camera}, least);
   if (!as_given) return {};
   BestReading best(fits, camera, least, *as_given, options.time_offset_s, y_up);
   best.TryWritten();
@@ -392,8 +317,16 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
   best.TryOtherAxes();
   best.TryRayLengths();
   const PoseDoubt& doubt = best.doubt();
-  if (doubt.better_misfit < std::min(kMostFitting, kClearlyBetter * *as_given)) return doubt;
-  if (fits.MisfitWhereShared(camera) < kLeastUnfitting) return {};
+  // Where most of the images is floor close below a camera, it is that which misfits where SLAM
+  // errs in height, and which fits poses that hardly move. So what shows motion must agree.
+  const double changed_as_given = fits.WhereShared({AsGiven, camera}, PairPoints::kChanged);
+  if (doubt.better_misfit < std::min(kMostFitting, kClearlyBetter * *as_given)) {
+    const double changed = fits.WhereShared(best.attempt(), PairPoints::kChanged);
+    if (changed < kClearlyBetter * changed_as_given) return doubt;
+    return {};
+  }
+  const double as_given_shared = fits.WhereShared({AsGiven, camera}, PairPoints::kAll);
+  if (std::min(as_given_shared, changed_as_given) < kLeastUnfitting) return {};
   return Unread(doubt, live);
 }
 

@@ -21,6 +21,10 @@ constexpr double kMostApart = 2.0;
 constexpr int kPointsAcross = 40;  // points per image row that are compared
 // A smaller share of common points is not enough.
 constexpr double kLeastShared = 0.2;
+// A pixel's depth has changed if it differs by more than this share; pairs in which fewer points
+// have changed show no motion.
+constexpr double kChange = 0.05;
+constexpr int kLeastChanged = 30;
 
 // The typical time between images (a median, as pauses are few).
 double UsualImageStepS(std::span<const RecordedImage> images) {
@@ -69,7 +73,7 @@ bool IsMostlyCut(const DepthImage& image) {
 }
 
 double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3& second_from_first,
-                DepthMeaning meaning) {
+                DepthMeaning meaning, PairPoints which) {
   const DepthImage& first = *pair.first;
   const DepthImage& second = *pair.second;
   const int step_px = std::max(1, first.width_px / kPointsAcross);
@@ -83,6 +87,10 @@ double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3&
     for (int u = step_px / 2; u < first.width_px; u += step_px) {
       const double z = z_m(first, u, v);
       if (!(z > 0.0)) continue;
+      if (which == PairPoints::kChanged) {
+        const double then = z_m(second, u, v);
+        if (!(std::abs(then - z) > kChange * z) || !(then > 0.0)) continue;
+      }
       ++points;
       const Eigen::Vector3d there = second_from_first * Unproject(camera, u, v, z);
       if (!(there.z() > 0.0)) continue;
@@ -94,6 +102,7 @@ double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3&
       if (seen > 0.0) misfits.push_back(std::abs(there.z() - seen) / seen);
     }
   }
+  if (which == PairPoints::kChanged && points < kLeastChanged) return kNothingShared;
   if (points == 0 || static_cast<double>(misfits.size()) < kLeastShared * points) {
     return kNothingShared;
   }

@@ -34,9 +34,17 @@ enum class DepthMeaning { kZ, kRayLength };
 
 constexpr double kNothingShared = 1.0;
 
+// Which points of a pair are compared.
+enum class PairPoints {
+  kAll,
+  // Those whose pixel has another depth in the second image. The floor before a robot's level
+  // camera, or the robot itself, stays as it is however the robot drives.
+  kChanged,
+};
+
 // The median distance of the surfaces in one image from those in the other, as a share of depth,
-// over what both show; kNothingShared with next to no overlap.
+// over what both show; kNothingShared with next to no overlap or next to no such points.
 double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3& second_from_first,
-                DepthMeaning meaning = DepthMeaning::kZ);
+                DepthMeaning meaning = DepthMeaning::kZ, PairPoints which = PairPoints::kAll);
 
 }  // namespace depthgrid

@@ -134,6 +134,42 @@ TEST(BodyFinder, IsNotTheFloor) {
   EXPECT_NEAR(body->share, 26 * 23 / 4800.0, 1e-9);
 }
 
+// A vacuum cleaner's camera in a small room sees no floor farther than 1 m in most views.
+TEST(BodyFinder, IsNotTheFloorCloseBelowTheCamera) {
+  AnalyticRoom room;
+  room.walls = {{-0.9, -0.9, 0.0}, {0.9, 0.9, 2.5}};
+  std::vector<DepthImage> views;
+  for (int i = 0; i < kTurn; ++i) {
+    const Pose2 pose{0.2 * std::cos(i), 0.0, 2.0 * kPi * i / kTurn};
+    views.push_back(room.Render(SmallCamera().camera, TiltedCamera(pose, 0.12, 0.0, 0.0)));
+  }
+  EXPECT_LT(views[0].At(40, 55), 0.4F);
+  EXPECT_FALSE(Found(views));
+  for (DepthImage& view : views) Paint(kGripper, 0.2F, view);
+  const auto body = Found(views);
+  ASSERT_TRUE(body);
+  EXPECT_NEAR(body->share, 26 * 23 / 4800.0, 1e-9);
+}
+
+// Level as a floor is, but the floor is seen beyond it.
+TEST(BodyFinder, IsTheDeckBelowTheCamera) {
+  constexpr double kAboveDeckM = 0.12, kEndM = 0.4;
+  std::vector<DepthImage> views;
+  for (int i = 0; i < kTurn; ++i) {
+    const Pose2 pose{0.3 * std::cos(i), 0.0, 2.0 * kPi * i / kTurn};
+    DepthImage& view = views.emplace_back(
+        AnalyticRoom{}.Render(SmallCamera().camera, TiltedCamera(pose, 0.3, 0.0, 0.0)));
+    for (int row = 30; row < view.height_px; ++row) {
+      const double depth_m = kAboveDeckM * 60.0 / (row - 29.5);
+      if (depth_m < kEndM) Paint({0, 80, row, row + 1}, static_cast<float>(depth_m), view);
+    }
+  }
+  const auto body = Found(views);
+  ASSERT_TRUE(body);
+  EXPECT_EQ(body->first_row, 48);
+  EXPECT_EQ(body->last_row, 59);
+}
+
 class BodyInFolder : public TemporaryFolderTest {
  protected:
   void Write(int frames) const {
