@@ -17,6 +17,7 @@
 #include "mapper/io/carmen_check.h"
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_scan_impl.h"
+#include "mapper/io/carmen_twins.h"
 #include "mapper/io/file.h"
 #include "mapper/io/laser_faults.h"
 #include "mapper/io/number_rows.h"
@@ -127,17 +128,28 @@ class CarmenLogSource : public FrameSource {
     return doubts;
   }
 
+  Doubts ReadAgain() {
+    names_ = {};
+    faults_ = LaserFaults(options_);
+    problems_.clear();
+    earlier_ = 0;
+    return ReadThrough();
+  }
+
   // Warns of possible faults of the log. If stamps decrease it is read once more, as only later
-  // stamps show which are wrong.
+  // stamps show which are wrong; so too if all scans are written twice.
   void Survey() {
     Doubts doubts = ReadThrough();
-    if (clock_.Mend()) {
-      names_ = {};
-      faults_ = LaserFaults(options_);
-      problems_.clear();
-      earlier_ = 0;
-      doubts = ReadThrough();
+    if (const std::optional<int> first = twins_.FirstFlaser()) {
+      warnings_.push_back(
+          fmt::format("{}:{}: scans are written twice, as FLASER and as ROBOTLASER1: the latter, "
+                      "which state their angles, are used",
+                      path_, *first));
+      leaves_out_flaser_ = true;
+      clock_ = {};
+      doubts = ReadAgain();
     }
+    if (clock_.Mend()) doubts = ReadAgain();
     faults_.Find();
     names_.part = FindPart(part_, names_.stamps_s, path_);
     std::erase_if(loops_, [&](const LoopClosure& loop) { return !names_.part.Has(loop); });
@@ -314,6 +326,8 @@ class CarmenLogSource : public FrameSource {
       if (const auto* max = std::get_if<CarmenMaximum>(&line)) front_max_m_ = max->range_m;
       auto* scan = std::get_if<CarmenScan>(&line);
       if (scan == nullptr) continue;
+      if (leaves_out_flaser_ && !scan->states_angles) continue;
+      if (!leaves_out_flaser_) twins_.Add(*scan, line_number_);
       if (scan->max_range_m == 0.0 && options_.max_range_m == 0.0) {
         scan->max_range_m = front_max_m_;
       }
@@ -344,6 +358,8 @@ class CarmenLogSource : public FrameSource {
   std::int64_t lines_of_scans_ = 0;
   FrameNames names_;
   ScanClock clock_;
+  CarmenTwins twins_;
+  bool leaves_out_flaser_ = false;
   double last_stamp_s_ = 0.0;
   std::optional<double> first_stamp_s_;
   enum class Place { kBeforePart, kInPart, kBehindPart };
