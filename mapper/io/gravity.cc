@@ -368,7 +368,7 @@ Views Upward(Views views, const Eigen::Vector3d& image_up) {
 void GravityFinder::Add(const DepthImage& image, const PinholeCamera& camera,
                         const Pose3& world_from_camera) {
   views_.push_back(internal::ViewOf(image, camera, world_from_camera));
-  image_up_ += world_from_camera.rotation * -Eigen::Vector3d::UnitY();
+  images_up_.Add(world_from_camera);
 }
 
 void GravityFinder::AddFirst(const DepthImage& image, const PinholeCamera& camera,
@@ -377,8 +377,8 @@ void GravityFinder::AddFirst(const DepthImage& image, const PinholeCamera& camer
 }
 
 std::optional<Gravity> GravityFinder::Find() const {
-  if (views_.empty() || image_up_.norm() == 0.0) return {};
-  const Eigen::Vector3d image_up = image_up_.normalized();
+  if (images_up_.Mean().norm() == 0.0) return {};
+  const Eigen::Vector3d image_up = images_up_.Mean().normalized();
   const Views upward = Upward(views_, image_up);
   const Views first_upward = Upward(first_views_, image_up);
   const Patches together = PatchesOf(upward);

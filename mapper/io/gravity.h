@@ -9,6 +9,7 @@
 #include "mapper/core/camera.h"
 #include "mapper/core/depth_image.h"
 #include "mapper/core/pose3.h"
+#include "mapper/io/images_up.h"
 #include "mapper/io/surface_view.h"
 
 namespace depthgrid {
@@ -44,13 +45,14 @@ class GravityFinder {
                 const Pose3& world_from_camera);
 
   // Nothing when no plane below the cameras is large enough. Assumes that images are upright
-  // within 50 degrees on average (not portrait).
+  // within 50 degrees on average, or held in portrait in a world whose z is up, and that the camera
+  // turns (ImagesUp).
   std::optional<Gravity> Find() const;
 
  private:
   std::vector<internal::SurfaceView> views_;
   std::vector<internal::SurfaceView> first_views_;
-  Eigen::Vector3d image_up_ = Eigen::Vector3d::Zero();  // sum over the frames, in the world
+  ImagesUp images_up_;
 };
 
 }  // namespace depthgrid

@@ -72,6 +72,24 @@ TEST(Gravity, FindsUpInAnyTurnedWorld) {
   EXPECT_EQ(cases, 12);
 }
 
+// A wall that stands beside the images' upper edge in some of them is no floor.
+TEST(Gravity, PortraitImagesAreTakenAsTheWorldsZSays) {
+  const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
+  const AnalyticRoom room = FurnishedRoom();
+  for (const double roll_rad : {0.5 * kPi, -0.5 * kPi}) {
+    GravityFinder finder;
+    for (int i = 0; i < 12; ++i) {
+      const Pose3 pose = TiltedCamera({0.3 * std::cos(i), 0.3 * std::sin(i), kPi * i / 6.0},
+                                      kHeightM, 0.4, roll_rad);
+      finder.Add(room.Render(camera, pose), camera, pose);
+    }
+    const auto gravity = finder.Find();
+    ASSERT_TRUE(gravity);
+    EXPECT_LT(AngleDeg(gravity->up_in_world, Eigen::Vector3d::UnitZ()), 0.3);
+    EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.02);
+  }
+}
+
 // One plane through all views was 3 degrees off.
 TEST(Gravity, DriftInHeightTiltsNothing) {
   const Eigen::Quaterniond turned(Eigen::AngleAxisd(RadFromDeg(26.0), Eigen::Vector3d::UnitX()));
