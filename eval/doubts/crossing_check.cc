@@ -2,12 +2,51 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <vector>
+
 #include "mapper/grid/crossed_walls.h"
+#include "mapper/grid/map_drawing.h"
 
 namespace depthgrid {
 
+namespace {
+
+bool MatchesOtherScans(const MapperResult& result) {
+  return std::any_of(result.mapped.begin(), result.mapped.end(), [](const MappedFrame& frame) {
+    return frame.kept() && !frame.of_prior_map() && frame.scan && frame.obstacles &&
+           !(frame.scan == frame.obstacles);
+  });
+}
+
+// The frames as if what was matched had been drawn too.
+std::vector<MappedFrame> WithMatchedDrawn(std::vector<MappedFrame> frames) {
+  for (MappedFrame& frame : frames) frame.obstacles = frame.scan;
+  return frames;
+}
+
+OccupancyMap Drawn(const std::vector<MappedFrame>& frames, double resolution_m) {
+  GridOptions options;
+  options.resolution_m = resolution_m;
+  MapDrawing drawing(options);
+  for (const MappedFrame& frame : frames) {
+    if (frame.kept() && frame.obstacles) {
+      drawing.Add(frame.frame, *frame.obstacles, frame.map_from_base);
+    }
+  }
+  return drawing.Map();
+}
+
+std::vector<CrossedWalls> WallsCrossed(const MapperResult& result) {
+  if (!MatchesOtherScans(result)) return WallsCrossed(result.mapped, result.map);
+  const std::vector<MappedFrame> frames = WithMatchedDrawn(result.mapped);
+  return WallsCrossed(frames, Drawn(frames, result.map.geometry.resolution_m));
+}
+
+}  // namespace
+
 std::optional<Crossing> CrossingOf(const MapperResult& result) {
-  const std::vector<CrossedWalls> scans = WallsCrossed(result.mapped, result.map);
+  const std::vector<CrossedWalls> scans = WallsCrossed(result);
   Crossing crossing;
   crossing.share = CrossingShare(scans);
   int most = 0;

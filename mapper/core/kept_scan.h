@@ -36,7 +36,9 @@ class KeptScan {
   // A view of the block's memory.
   PackedScan packed() const;
 
-  bool operator==(const KeptScan& other) const { return **this == *other; }
+  bool operator==(const KeptScan& other) const {
+    return (block_ == other.block_ && at_ == other.at_) || **this == *other;
+  }
 
  private:
   friend class ScanArchive;

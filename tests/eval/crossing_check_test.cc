@@ -107,6 +107,21 @@ TEST(CrossingCheck, OnlyWhereTheBeamSaysThatTheWayIsFree) {
   EXPECT_EQ(ShareOf(ResultOf({scan}, MapWithWalls({1.3, kWallM}))), 1.0);
 }
 
+// From afar a camera sees a table top, from nearby it looks over it at the wall. What is matched,
+// at the camera's height, shows the wall alone.
+TEST(CrossingCheck, OfACameraIsThatOfWhatIsMatched) {
+  constexpr double kTableM = 2.0;
+  MapperResult result = ResultOf({ScanOfWall(kTableM), ScanOfWall(kWallM), ScanOfWall(kWallM)},
+                                 MapWithWalls({kTableM, kWallM}));
+  EXPECT_NEAR(ShareOf(result), 2.0 / 3.0, 0.01);
+  ScanArchive archive;
+  for (MappedFrame& frame : result.mapped) frame.scan = archive.Keep(ScanOfWall(kWallM));
+  EXPECT_EQ(ShareOf(result), 0.0);
+  // A wrong pose, from which the same wall seems to stand farther away.
+  result.mapped[2].map_from_base.x_m = 0.5;
+  EXPECT_GT(ShareOf(result), 0.1);
+}
+
 TEST(CrossingCheck, IsOfTheRunsOwnKeptScans) {
   MapperResult result = ResultOf({ScanOfWall(kWallM), ScanOfWall(kWallM)}, MapWithWalls({1.5}));
   EXPECT_EQ(ShareOf(result), 1.0);
