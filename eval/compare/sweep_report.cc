@@ -131,6 +131,7 @@ Json LinesJson(const SweepGrid& grid, std::size_t axis, const ShownMetric& metri
     }
     const BestSetting& best = *line.best;
     one["best"] = best.index;
+    if (best.is_alike) one["alike"] = true;
     one["seeds"] = line.seeds;
     one["low"] = best.setting_interval.low;
     one["high"] = best.setting_interval.high;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "eval/metrics/statistics.h"
 #include "eval/statistics/holm.h"
@@ -17,18 +18,19 @@ void RequireDirection(Better better) {
 // Smaller is always better.
 double Loss(double value, Better better) { return better == Better::kLower ? value : -value; }
 
-std::size_t BestAt(const std::vector<SettingRuns>& runs, std::span<const std::uint32_t> seeds,
-                   Better better) {
-  std::size_t best = 0;
-  double best_sum = 0.0;
-  for (std::size_t k = 0; k < runs.size(); ++k) {
+// The settings with the best sum, and those whose sums differ from it only by rounding.
+std::vector<std::size_t> BestAt(const std::vector<SettingRuns>& runs,
+                                std::span<const std::uint32_t> seeds, Better better) {
+  std::vector<double> sums;
+  for (const SettingRuns& r : runs) {
     double sum = 0.0;
-    for (const std::uint32_t seed : seeds) sum += Loss(runs[k].by_seed[seed], better);
-    // Of sums that differ only by rounding the first is best.
-    if (k == 0 || best_sum - sum > kRoundingShare * std::abs(best_sum)) {
-      best_sum = sum;
-      best = k;
-    }
+    for (const std::uint32_t seed : seeds) sum += Loss(r.by_seed[seed], better);
+    sums.push_back(sum);
+  }
+  const double least = *std::min_element(sums.begin(), sums.end());
+  std::vector<std::size_t> best;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    if (sums[k] - least <= kRoundingShare * std::abs(least)) best.push_back(k);
   }
   return best;
 }
@@ -36,16 +38,28 @@ std::size_t BestAt(const std::vector<SettingRuns>& runs, std::span<const std::ui
 std::size_t BestOfAll(const std::vector<SettingRuns>& runs, Better better) {
   std::vector<std::uint32_t> seeds(runs.front().by_seed.size());
   for (std::size_t i = 0; i < seeds.size(); ++i) seeds[i] = static_cast<std::uint32_t>(i);
-  return BestAt(runs, seeds, better);
+  return BestAt(runs, seeds, better).front();
 }
 
-// Quantiles rounded outwards to members of the list.
-ConfidenceInterval IntervalOfMembers(std::vector<double> settings, double confidence) {
-  std::sort(settings.begin(), settings.end());
-  const auto last = static_cast<double>(settings.size() - 1);
+bool AreAlike(const std::vector<SettingRuns>& runs) {
+  const std::vector<double>& first = runs.front().by_seed;
+  return runs.size() > 1 && std::all_of(runs.begin(), runs.end(), [&](const SettingRuns& r) {
+           return std::equal(first.begin(), first.end(), r.by_seed.begin(), [](double a, double b) {
+             return std::abs(a - b) <= kRoundingShare * std::abs(a);
+           });
+         });
+}
+
+// Quantiles of the resamples' least and greatest best settings, rounded outwards to members of the
+// lists.
+ConfidenceInterval IntervalOfMembers(std::vector<double> least, std::vector<double> greatest,
+                                     double confidence) {
+  std::sort(least.begin(), least.end());
+  std::sort(greatest.begin(), greatest.end());
+  const auto last = static_cast<double>(least.size() - 1);
   const double low = std::floor(0.5 * (1.0 - confidence) * last);
   const double high = std::ceil(0.5 * (1.0 + confidence) * last);
-  return {settings[static_cast<std::size_t>(low)], settings[static_cast<std::size_t>(high)]};
+  return {least[static_cast<std::size_t>(low)], greatest[static_cast<std::size_t>(high)]};
 }
 
 std::vector<double> AdjustedAgainst(const std::vector<SettingRuns>& runs, std::size_t best) {
@@ -72,14 +86,21 @@ BestSetting FindBestSetting(const std::vector<SettingRuns>& runs, Better better,
   BestSetting best;
   best.index = BestOfAll(runs, better);
   best.setting = runs[best.index].setting;
+  best.is_alike = AreAlike(runs);
   best.share_best.assign(runs.size(), 0.0);
-  std::vector<double> winners;
+  std::vector<double> least, greatest;
   for (int i = 0; i < resamples.count(); ++i) {
-    const std::size_t winner = BestAt(runs, resamples[i], better);
-    winners.push_back(runs[winner].setting);
-    best.share_best[winner] += 1.0 / resamples.count();
+    const std::vector<std::size_t> winners = BestAt(runs, resamples[i], better);
+    least.push_back(std::numeric_limits<double>::infinity());
+    greatest.push_back(-std::numeric_limits<double>::infinity());
+    for (const std::size_t winner : winners) {
+      least.back() = std::min(least.back(), runs[winner].setting);
+      greatest.back() = std::max(greatest.back(), runs[winner].setting);
+      best.share_best[winner] += 1.0 / (resamples.count() * static_cast<double>(winners.size()));
+    }
   }
-  best.setting_interval = IntervalOfMembers(std::move(winners), resamples.confidence());
+  best.setting_interval =
+      IntervalOfMembers(std::move(least), std::move(greatest), resamples.confidence());
   best.p_as_good = AdjustedAgainst(runs, best.index);
   for (const SettingRuns& r : runs) {
     best.regret_mean.push_back(Summarise(Regret(r.by_seed, runs[best.index].by_seed, better)).mean);

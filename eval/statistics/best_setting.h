@@ -19,9 +19,11 @@ struct SettingRuns {
 struct BestSetting {
   std::size_t index = 0;  // of the best mean; the first on ties
   double setting = 0.0;
+  bool is_alike = false;  // all settings give the same for every seed: none is the best
   // Bootstrap interval of the best setting; its ends are swept values.
   ConfidenceInterval setting_interval;
-  std::vector<double> share_best;   // by setting: share of the resamples in which it is the best
+  std::vector<double> share_best;   // by setting: share of the resamples in which it is the best;
+                                    // settings that tie divide a resample among them
   std::vector<double> p_as_good;    // by setting: p-value of Wilcoxon's test against the best,
                                     // Holm-adjusted; 1 for the best
   std::vector<double> regret_mean;  // by setting: mean over seeds of Regret() against the best

@@ -1,5 +1,7 @@
 #include "eval/statistics/paired_comparison.h"
 
+#include <cmath>
+
 #include "eval/metrics/statistics.h"
 #include "eval/statistics/sample_summary.h"
 #include "mapper/core/error.h"
@@ -21,7 +23,8 @@ PairedComparison ComparePaired(const std::vector<double>& a, const std::vector<d
   result.pairs = summary.count;
   result.mean_a = Summarise(a).mean;
   result.mean_b = Summarise(b).mean;
-  result.mean_difference = summary.mean;
+  const double rounding = Summarise(differences.rounding).mean;
+  result.mean_difference = std::abs(summary.mean) <= rounding ? 0.0 : summary.mean;
   result.median_difference = summary.median;
   result.std_difference = summary.std;
   result.mean_interval = summary.mean_interval;

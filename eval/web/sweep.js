@@ -24,9 +24,11 @@ function headline() {
     if (isNumber(metric.low[best])) cards.push(card(`${rough(metric.low[best], false)} – ${rough(metric.high[best])}`, "its 95 % interval"));
   }
   const line = linesAlong(along.axis).find((l) => l.points.includes(best));
-  if (line) {
-    const axis = AXES[along.axis];
-    const held = heldText(line);
+  const axis = AXES[along.axis];
+  const held = line && heldText(line);
+  if (line?.alike) {
+    cards.push(card("no effect", `of ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}: all its values give the same`));
+  } else if (line) {
     cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}${hasUnlikeSeeds(line) ? `, over the ${line.seeds} seeds that all its points have` : ""}`));
     if (line.seeds > 1) cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
     if (line.seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), `regret: its mean loss against ${oracleOf(line)}`));

@@ -59,6 +59,7 @@ function bestOfColumns(cells) {
     column.forEach((cell, r) => { if (cell && (row < 0 || isBetter(cell.mean, column[row].mean))) row = r; });
     if (row < 0) return null;
     const line = lines.find((l) => column[row].count === 1 && l.points.includes(column[row].point));
+    if (line?.alike) return null;
     return line ? { row, low: numberRow(line.low), high: numberRow(line.high) } : { row };
   });
 }

@@ -145,7 +145,7 @@ function csvOfBest(lines, axis) {
   const heads = ["held", axis.key, `mean${unit}`, `95 % low${unit}`, `95 % high${unit}`, "p (Holm)", "best in resamples", `regret${unit}`, "regret to", "is best", "best 95 % low", "best 95 % high", "seeds"];
   const rows = lines.flatMap((line) => line.points.map((i, k) => [heldText(line), axis.labels[POINTS[i].values[along.axis]],
     metric.mean[i], metric.low[i], metric.high[i], k === line.best ? "" : line.p?.[k], line.share_best?.[k],
-    line.regret_of_seed ? line.regret_of_seed[k] * metric.factor : "", line.to_oracle ? "oracle" : "best value", k === line.best ? 1 : 0, line.low, line.high, line.seeds]));
+    line.regret_of_seed ? line.regret_of_seed[k] * metric.factor : "", line.to_oracle ? "oracle" : "best value", k === line.best && !line.alike ? 1 : 0, line.low, line.high, line.seeds]));
   return csvText([heads, ...rows]);
 }
 
@@ -168,6 +168,7 @@ function drawBest() {
   const rows = lines.map((line) => {
     const asGood = line.p.map((value, k) => [value, k]).filter(([value, k]) => k === line.best || (isNumber(value) && value >= 0.05)).map(([, k]) => at(line, k));
     const mean = compact(metric.mean[line.points[line.best]]);
+    if (line.alike) return [heldText(line), "none: no effect", "–", "–", mean, "all give the same", "–", String(line.seeds)];
     if (line.seeds < 2) return [heldText(line), at(line, line.best), "–", "–", mean, "one seed tells nothing", "–", String(line.seeds)];
     return [heldText(line), at(line, line.best), line.low === line.high ? compact(line.low) : `${compact(line.low)} to ${compact(line.high)}`,
       percent(line.share_best[line.best]),

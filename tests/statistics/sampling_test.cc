@@ -106,12 +106,21 @@ TEST(Paired, WhatRoundingLeavesIsNoWin) {
   EXPECT_EQ(c.mean_difference, 0.0);
 }
 
+TEST(Paired, DifferencesThatCancelLeaveNoRounding) {
+  const std::vector<double> a = {0.95, 0.9, 0.85, 0.7}, b = {0.9, 0.95, 0.75, 0.8};
+  EXPECT_EQ(ComparePaired(a, b, Better::kHigher, Resamples(4)).mean_difference, 0.0);
+}
+
 TEST(BestSetting, WhatRoundingLeavesMakesNoneTheBest) {
   const std::vector<SettingRuns> runs = {{0.0, std::vector<double>(8, 0.07071067811865465)},
                                          {1.0, std::vector<double>(8, 0.07071067811865463)}};
   const BestSetting best = FindBestSetting(runs, Better::kLower, Resamples(8));
   EXPECT_EQ(best.index, 0U);  // the first on ties
-  EXPECT_NEAR(best.share_best[0], 1.0, 1e-12);
+  EXPECT_TRUE(best.is_alike);
+  EXPECT_NEAR(best.share_best[0], 0.5, 1e-12);
+  EXPECT_NEAR(best.share_best[1], 0.5, 1e-12);
+  EXPECT_EQ(best.setting_interval.low, 0.0);
+  EXPECT_EQ(best.setting_interval.high, 1.0);
   EXPECT_EQ(best.p_as_good[1], 1.0);
 }
 
@@ -186,8 +195,9 @@ TEST(BestSetting, HandWorked) {
   EXPECT_EQ(best.share_best[0], 0.0);  // worse for every seed
   // The sums of the other two differ by -1, 1, -1, -2: 1.0 wins when seed 1 is drawn more than the
   // sum of the others wants, which is at least three of four draws: (4 * 3 + 1) / 256 = 5.1 %;
-  // two of seed 1 and two of seeds 0 or 2 tie (first wins).
-  EXPECT_NEAR(best.share_best[2], 13.0 / 256.0, 0.01);
+  // two of seed 1 and two of seeds 0 or 2 tie: half of 6 * 2 * 2 / 256.
+  EXPECT_FALSE(best.is_alike);
+  EXPECT_NEAR(best.share_best[2], (13.0 + 12.0) / 256.0, 0.01);
   EXPECT_EQ(best.setting_interval.low, 0.5);
   EXPECT_EQ(best.setting_interval.high, 1.0);
   EXPECT_NEAR(best.regret_mean[0], 3.25, 1e-12);
