@@ -37,10 +37,15 @@ OccupancyMap Drawn(const std::vector<MappedFrame>& frames, double resolution_m) 
   return drawing.Map();
 }
 
+// A camera's obstacles change with its distance, and what is matched with its height, also where
+// poses are right. Where they are wrong both contradict themselves, so the lesser share is told.
 std::vector<CrossedWalls> WallsCrossed(const MapperResult& result) {
-  if (!MatchesOtherScans(result)) return WallsCrossed(result.mapped, result.map);
+  std::vector<CrossedWalls> of_obstacles = WallsCrossed(result.mapped, result.map);
+  if (!MatchesOtherScans(result)) return of_obstacles;
   const std::vector<MappedFrame> frames = WithMatchedDrawn(result.mapped);
-  return WallsCrossed(frames, Drawn(frames, result.map.geometry.resolution_m));
+  std::vector<CrossedWalls> of_matched =
+      WallsCrossed(frames, Drawn(frames, result.map.geometry.resolution_m));
+  return CrossingShare(of_matched) < CrossingShare(of_obstacles) ? of_matched : of_obstacles;
 }
 
 }  // namespace
