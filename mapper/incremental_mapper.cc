@@ -308,6 +308,7 @@ FusedPose IncrementalMapper::State::Fuse(const Prediction& prediction, FrameRepo
 
 void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& report) {
   const bool taken = report.match.found && !fused.rejected;
+  has_matched = has_matched || taken;
   errors.Add(
       filter.step(), report.index, static_cast<int>(mapped.size()),
       report.match.information / (options.fusion.match_overconfidence * match_noise.factor()),

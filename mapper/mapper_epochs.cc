@@ -43,6 +43,8 @@ IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
   const Extrapolation went_on = Extrapolated(history, filter.map_from_slam());
   const EpochStart going_on{went_on.map_from_base, went_on.sigma_share, went_on.gap_share};
   EpochStart carried{CarriedOn(), 1.0};
+  // What SLAM corrects is its own drift then, and the map drifted along.
+  if (!has_matched) return carried;
   if (!scan || mapped.empty()) return went_on.near ? going_on : carried;
   const auto share = [&](const Pose2& guess, double sigma_share) {
     const MatchResult match =

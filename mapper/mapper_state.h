@@ -41,6 +41,7 @@ struct IncrementalMapper::State {
   PoseErrors errors;
   MatchNoise match_noise;
   std::optional<int> filter_epoch;  // SLAM epoch of the correction
+  bool has_matched = false;         // a match was taken: the map says more than SLAM alone
   double gap_variance = 0.0;        // square of MappedFrame::gap_share since the last mapped frame
   LoopCloser loop_closer;
   std::optional<LoopSearch> loop_search;

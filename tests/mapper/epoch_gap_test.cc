@@ -86,5 +86,24 @@ TEST(EpochGap, AnEpochOfWhichNothingIsMappedCounts) {
   EXPECT_GE(GapShare(frames), 1.0);
 }
 
+// Where nothing was in reach of the sensor so far, the map knows nothing better than SLAM, which
+// corrects its own drift.
+TEST(EpochGap, BeforeAnythingWasMatchedTheCorrectionIsSlams) {
+  for (const bool sees : {true, false}) {
+    IncrementalMapper mapper({}, std::nullopt);
+    Pose2 last, slam;
+    for (Frame& frame : JumpingFrames()) {
+      Scan scan = *frame.scan;
+      for (Beam& beam : scan.beams) beam.hit = beam.hit && sees;
+      frame.scan = std::make_shared<Scan>(scan);
+      last = BaseOf(*mapper.AddFrame(frame).map_from_camera);
+      slam = BaseOf(*frame.slam_from_camera);
+    }
+    const double apart_m = (last.translation() - slam.translation()).norm();
+    EXPECT_EQ(apart_m > 0.04, sees) << apart_m;
+    EXPECT_EQ(apart_m < 1e-9, !sees) << apart_m;
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
