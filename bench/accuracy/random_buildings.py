@@ -239,14 +239,14 @@ def refuse(what):
     return 2
 
 
-def read_command(usage, target, flag=None):
-    """PROGRAM FOLDER FIRST COUNT [FLAG] [-- ARGUMENT ...]: (program, folder, the numbers, whether the flag was given, the
-    arguments); None where it was refused. FOLDER is made."""
+def read_command(usage, target, *flags):
+    """PROGRAM FOLDER FIRST COUNT [FLAG] [-- ARGUMENT ...]: (program, folder, the numbers, the flag that was given or None,
+    the arguments); None where it was refused. FOLDER is made."""
     own = (sys.argv[1:] + ["--"]).index("--")
     arguments, more = sys.argv[1:own + 1], sys.argv[own + 2:]
-    flagged = flag in arguments
-    arguments = [a for a in arguments if a != flag]
-    if len(arguments) != 4:
+    given = [a for a in arguments if a in flags]
+    arguments = [a for a in arguments if a not in flags]
+    if len(arguments) != 4 or len(given) > 1:
         print(usage, file=sys.stderr)
         return None
     program, folder, *numbers = arguments
@@ -262,7 +262,7 @@ def read_command(usage, target, flag=None):
         refuse(f"{folder}: {error.strerror}")
         return None
     first, count = int(numbers[0]), int(numbers[1])
-    return os.path.abspath(program), folder, range(first, first + count), flagged, more
+    return os.path.abspath(program), folder, range(first, first + count), given[0] if given else None, more
 
 
 def main():
@@ -275,7 +275,7 @@ def main():
         name = f"{folder}/w{number}"
         if not os.path.exists(name + ".truth.txt") and not write_world(number, name):
             continue
-        settings = settings_of(number, hard)
+        settings = settings_of(number, hard is not None)
         options = [text for key, value in settings.items() for text in (f"--{key}", str(value))]
         done = subprocess.run([program, "--worlds", f"w{number}", "--seeds", "2", "--threads", "1", *options, *more],
                               cwd=folder, capture_output=True, text=True, check=False)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Rooms, paths, depth cameras and SLAM drawn at random, and how far depthgrid run is off in them (python3-numpy).
 
-    random_scenes.py DEPTHGRID FOLDER FIRST COUNT [--uneven] [-- ARGUMENT ...]
+    random_scenes.py DEPTHGRID FOLDER FIRST COUNT [--uneven | --odd] [-- ARGUMENT ...]
 
 Scene i is a building of random_buildings.py up to 20 m long, its walls up to the ceiling, with or without furniture of
 several forms and heights. The path leads between random places in it, 30 or 60 s, on a robot (the camera .25 to 1.2 m
@@ -9,7 +9,8 @@ high) or hand-held. Camera, depth noise, its artifacts, SLAM profile, drift, loo
 keeps the scenes (sI.yaml), paths (sI.path.txt), experiments (sI.run.yaml), the results of each run (sI.out) and those
 of earlier calls; the arguments behind -- go to depthgrid run. The same number gives the same scene and settings.
 --uneven: floors with rugs, platforms, ramps and lower parts, the drift of the SLAM profile itself and no losses; files
-are uI. docs/results.md, "Random rooms".
+are uI. --odd: cameras from 6 cm to 2.2 m high, from 30 degrees up to 55 down, half of them on their side or head, and no
+losses; files are oI. docs/results.md, "Random rooms".
 """
 import csv
 import json
@@ -175,7 +176,7 @@ def camera_path(poses, drawn, number):
     roll = wander(chance, count, 2.5 if hand else 0.15, 45)
     aside = wander(chance, count, 6 if hand else 0, 60)
     for k, (x, y, yaw) in enumerate(poses):
-        a, b, c = yaw + math.radians(aside[k]), math.radians(-(drawn["pitch"] + pitch[k])), math.radians(roll[k])
+        a, b, c = yaw + math.radians(aside[k]), math.radians(-(drawn["pitch"] + pitch[k])), math.radians(drawn.get("roll", 0) + roll[k])
         about_z = np.array([[math.cos(a), -math.sin(a), 0], [math.sin(a), math.cos(a), 0], [0, 0, 1]])
         about_y = np.array([[math.cos(b), 0, math.sin(b)], [0, 1, 0], [-math.sin(b), 0, math.cos(b)]])
         about_x = np.array([[1, 0, 0], [0, math.cos(c), -math.sin(c)], [0, math.sin(c), math.cos(c)]])
@@ -183,7 +184,14 @@ def camera_path(poses, drawn, number):
             k / buildings.RATE_HZ, x, y, drawn["height"] + up[k], *quaternion(about_z @ about_y @ about_x @ OPTICAL))
 
 
-def settings_of(number, uneven):
+def odd_stand(number, hand):
+    chance = random.Random(number * 1000 + 11)
+    height = chance.uniform(0.6, 1.9) if hand else chance.choice([chance.uniform(0.06, 0.2), chance.uniform(0.2, 2.2)])
+    return {"height": height, "pitch": chance.choice([0, 10, 20, 30, -10, -25, -30, -35, -45, -55]),
+            "roll": chance.choice([0, 0, 0, 90, -90, 180])}
+
+
+def settings_of(number, kind):
     chance = random.Random(number * 1000 + 7)
     camera, noise = chance.choice([("icl_nuim", "handa"), ("tum_fr1", "nguyen"), ("d435", "d435"),
                                    ("kinect_v2", "kinect_v2"), ("azure", "azure"), ("kinect_v1", "nguyen")])
@@ -198,8 +206,10 @@ def settings_of(number, uneven):
              "scenario": chance.choice([None, None, "none", "late", "missed", "false"]),
              "flying": chance.choice([0, 0, 0.3]), "shadow": chance.choice([0, 0.075]),
              "alike": chance.choice([0, 0, 3]), "lost": chance.choice([0, 0, 0, 0.02])}
-    if uneven:
+    if kind == "--uneven":
         drawn.update(drift_scale=None, lost=0)
+    if kind == "--odd":
+        drawn.update(odd_stand(number, hand), lost=0)
     return drawn
 
 
@@ -244,19 +254,20 @@ def scores_of(folder):
     with open(folder + "/frames.csv", encoding="ascii") as file:
         off_m = [abs(float(row["camera_height_m"]) - true_m[row["stamp_s"]])
                  for row in csv.DictReader(file) if row["camera_height_m"]]
-    return [*errors, metrics["map"]["observable"]["occupied"]["f1"], float(np.mean(np.array(off_m) > 0.04))]
+    # None where no wall is observable
+    return [*errors, metrics["map"]["observable"]["occupied"]["f1"] or 0.0, float(np.mean(np.array(off_m) > 0.04))]
 
 
 def main():
-    command = buildings.read_command(__doc__, "depthgrid", "--uneven")
+    command = buildings.read_command(__doc__, "depthgrid", "--uneven", "--odd")
     if command is None:
         return 2
-    program, folder, numbers, uneven, more = command
+    program, folder, numbers, kind, more = command
     rows = []
     for number in numbers:
-        drawn, scene = settings_of(number, uneven), f"{'u' if uneven else 's'}{number}"
+        drawn, scene = settings_of(number, kind), f"{kind[2] if kind else 's'}{number}"
         name = f"{folder}/{scene}"
-        if not os.path.exists(name + ".run.yaml") and not write_scene(number, folder, scene, drawn, uneven):
+        if not os.path.exists(name + ".run.yaml") and not write_scene(number, folder, scene, drawn, kind == "--uneven"):
             continue
         done = subprocess.run([program, "run", name + ".run.yaml", "-o", name + ".out", "--force", *more],
                               capture_output=True, text=True, check=False)
