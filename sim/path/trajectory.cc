@@ -147,7 +147,7 @@ std::optional<std::string> NearText(const Trajectory& trajectory,
     const double distance = distance_m(i);
     const bool is_near = distance < clearance_m;
     if (is_near && !was_near && stretches++ == 0) {
-      first = fmt::format("{} is {:.3f} m from {}, must be at least {:.3f} m",
+      first = fmt::format("{} is {:.3f} m from {}, must be at least {:.3f} m (clearance_m)",
                           Shown(static_cast<int>(i), trajectory[i].world_from_camera.translation),
                           distance, what, clearance_m);
     }

@@ -269,7 +269,8 @@ TEST(CheckClearance, NamesTheFirstPlaceAndCountsThem) {
   };
   EXPECT_EQ(error({0.0, 2.0, 3.0}), "no error");
   const std::string first =
-      "path: frame 3 at (3.12, 1.00, 1.20) is 0.125 m from geometry, must be at least 0.250 m";
+      "path: frame 3 at (3.12, 1.00, 1.20) is 0.125 m from geometry, must be at least 0.250 m "
+      "(clearance_m)";
   EXPECT_EQ(error({0.0, 2.0, 3.0, 3.125}), first);
   EXPECT_EQ(error({0.0, 2.0, 3.0, 3.125, 3.2, 2.0}), first);  // one place
   EXPECT_EQ(error({0.0, 2.0, 3.0, 3.125, 3.2, 2.0, 3.1, 1.0, 3.1}),
