@@ -31,7 +31,7 @@ class KilledSweep : public SweepTableTest {
       argv.push_back(nullptr);
       const bool quiet = ::chdir(root_.c_str()) == 0 &&
                          std::freopen("/dev/null", "w", stdout) != nullptr &&
-                         std::freopen("/dev/null", "w", stderr) != nullptr;
+                         std::freopen("killed.stderr", "w", stderr) != nullptr;
       if (quiet) ::execv(kProgramFile, argv.data());
       ::_exit(1);
     }
@@ -55,7 +55,11 @@ class KilledSweep : public SweepTableTest {
     std::this_thread::sleep_for(longer);
     ::kill(child, SIGKILL);
     ::waitpid(child, &status, 0);
-    if (!WIFSIGNALED(status)) return std::nullopt;
+    if (!WIFSIGNALED(status)) {
+      ADD_FAILURE() << "ended with " << WEXITSTATUS(status) << " and " << done(open())
+                    << " rows: " << ReadFile(Path("killed.stderr"));
+      return std::nullopt;
+    }
     return done(open());
   }
 };
