@@ -45,7 +45,7 @@ IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
   EpochStart carried{CarriedOn(), 1.0};
   // What SLAM corrects is its own drift then, and the map drifted along.
   if (!has_matched) return carried;
-  if (!scan || mapped.empty()) return went_on.near ? going_on : carried;
+  if (!scan) return went_on.near ? going_on : carried;
   const auto share = [&](const Pose2& guess, double sigma_share) {
     const MatchResult match =
         reference->Match(scan, {guess, filter.covariance() + AddedBy(sigma_share)});

@@ -176,7 +176,8 @@ def camera_path(poses, drawn, number):
     roll = wander(chance, count, 2.5 if hand else 0.15, 45)
     aside = wander(chance, count, 6 if hand else 0, 60)
     for k, (x, y, yaw) in enumerate(poses):
-        a, b, c = yaw + math.radians(aside[k]), math.radians(-(drawn["pitch"] + pitch[k])), math.radians(drawn.get("roll", 0) + roll[k])
+        a, b = yaw + math.radians(aside[k]), math.radians(-(drawn["pitch"] + pitch[k]))
+        c = math.radians(drawn.get("roll", 0) + roll[k])
         about_z = np.array([[math.cos(a), -math.sin(a), 0], [math.sin(a), math.cos(a), 0], [0, 0, 1]])
         about_y = np.array([[math.cos(b), 0, math.sin(b)], [0, 1, 0], [-math.sin(b), 0, math.cos(b)]])
         about_x = np.array([[1, 0, 0], [0, math.cos(c), -math.sin(c)], [0, math.sin(c), math.cos(c)]])

@@ -19,6 +19,8 @@ class ImagesUp {
   // images. Of images held in portrait, which point upward in all directions as the camera turns
   // while z of the world stays beside them, it is z.
   Eigen::Vector3d Mean() const {
+    // Images pitched by up to 37 degrees agree as well, whichever way the camera turns; those
+    // pitched so in portrait have z beside them by more. Chosen, not measured.
     constexpr double kMostAgreement = 0.8, kLeastSideways = 0.75;
     const bool agree = upward_.norm() > kMostAgreement * count_;
     const bool lie_aside = sideways_ > kLeastSideways * count_;

@@ -15,7 +15,8 @@ namespace {
 constexpr double kNearM = 0.12;
 // Plausible heights of a pose if its z is above the floor; in recordings z often begins at 0.
 constexpr double kLeastPoseHeightM = 0.1;
-// A camera lower than this may be one of a vacuum cleaner, as may one whose height is unknown.
+// A camera lower than this may be one of a vacuum cleaner, as may one whose height is unknown. Of
+// others nothing that is so close below them is looked at: it is no floor.
 constexpr double kLowM = 0.2;
 constexpr double kMostPoseHeightM = 3.0;
 // Of level surfaces, noise and skirting boards below a floor have less than this share of the

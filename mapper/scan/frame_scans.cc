@@ -67,8 +67,9 @@ bool ShowsHorizon(const PinholeCamera& camera, const CameraStand& stand) {
          pixel.y() <= camera.height_px - 1.0;
 }
 
-bool LooksUp(const CameraStand& stand) {
-  return (stand.level_from_camera * Eigen::Vector3d::UnitZ()).z() > 0.0;
+bool LooksBelowHorizon(const PinholeCamera& camera, const CameraStand& stand) {
+  const Eigen::Vector3d axis = stand.level_from_camera * Eigen::Vector3d::UnitZ();
+  return axis.z() <= 0.0 && !ShowsHorizon(camera, stand);
 }
 
 }  // namespace
@@ -100,9 +101,9 @@ std::shared_ptr<const Scan> FrameScanner::SoundPart(const Scan& given) {
 SliceHeights FrameScanner::SliceOf(const CameraStand& stand) const {
   const double half_m = slice_half_height_m_;
   if (!floor_->KnowsHeight()) return {-half_m, half_m};
-  const double floor_band_m = band_low_m_ - stand.height_m;
-  if (!ShowsHorizon(camera_, stand)) return {floor_band_m, floor_band_m + 2.0 * half_m};
-  return {std::clamp(floor_band_m, -half_m, 0.0), half_m};
+  const double band_low_m = band_low_m_ - stand.height_m;  // above the camera, as the slice is
+  if (LooksBelowHorizon(camera_, stand)) return {band_low_m, band_low_m + 2.0 * half_m};
+  return {std::clamp(band_low_m, -half_m, 0.0), half_m};
 }
 
 FrameScans FrameScanner::ScansOf(const Frame& frame) {
@@ -126,10 +127,9 @@ FrameScans FrameScanner::ScansOf(const Frame& frame) {
   if (drop_cut_ends_) DropCutEnds(scans.noise, farthest_m_, scans.slice);
   *obstacles = std::move(scans.obstacles);
   *slice = std::move(scans.slice);
-  if (!ShowsHorizon(camera_, stand) && (!floor_->KnowsHeight() || LooksUp(stand))) {
-    return {obstacles, obstacles, stand};
-  }
-  return {obstacles, slice, stand};
+  const bool is_in_view =
+      ShowsHorizon(camera_, stand) || (floor_->KnowsHeight() && LooksBelowHorizon(camera_, stand));
+  return {obstacles, is_in_view ? slice : obstacles, stand};
 }
 
 }  // namespace depthgrid

@@ -58,6 +58,16 @@ std::vector<DepthImage> Views(int count = kTurn, double height_m = 1.2) {
   return views;
 }
 
+// What a level camera sees that turns round once.
+std::vector<DepthImage> LevelViews(const AnalyticRoom& room, double height_m) {
+  std::vector<DepthImage> views;
+  for (int i = 0; i < kTurn; ++i) {
+    const Pose2 pose{0.2 * std::cos(i), 0.0, 2.0 * kPi * i / kTurn};
+    views.push_back(room.Render(SmallCamera().camera, TiltedCamera(pose, height_m, 0.0, 0.0)));
+  }
+  return views;
+}
+
 TEST(BodyFinder, FindsWhatStaysWhileTheCameraTurns) {
   std::vector<DepthImage> views = Views();
   EXPECT_FALSE(Found(views));
@@ -138,11 +148,7 @@ TEST(BodyFinder, IsNotTheFloor) {
 TEST(BodyFinder, IsNotTheFloorCloseBelowTheCamera) {
   AnalyticRoom room;
   room.walls = {{-0.9, -0.9, 0.0}, {0.9, 0.9, 2.5}};
-  std::vector<DepthImage> views;
-  for (int i = 0; i < kTurn; ++i) {
-    const Pose2 pose{0.2 * std::cos(i), 0.0, 2.0 * kPi * i / kTurn};
-    views.push_back(room.Render(SmallCamera().camera, TiltedCamera(pose, 0.12, 0.0, 0.0)));
-  }
+  std::vector<DepthImage> views = LevelViews(room, 0.12);
   EXPECT_LT(views[0].At(40, 55), 0.4F);
   EXPECT_FALSE(Found(views));
   for (DepthImage& view : views) Paint(kGripper, 0.2F, view);
@@ -154,11 +160,8 @@ TEST(BodyFinder, IsNotTheFloorCloseBelowTheCamera) {
 // Level as a floor is, but the floor is seen beyond it.
 TEST(BodyFinder, IsTheDeckBelowTheCamera) {
   constexpr double kAboveDeckM = 0.12, kEndM = 0.4;
-  std::vector<DepthImage> views;
-  for (int i = 0; i < kTurn; ++i) {
-    const Pose2 pose{0.3 * std::cos(i), 0.0, 2.0 * kPi * i / kTurn};
-    DepthImage& view = views.emplace_back(
-        AnalyticRoom{}.Render(SmallCamera().camera, TiltedCamera(pose, 0.3, 0.0, 0.0)));
+  std::vector<DepthImage> views = LevelViews({}, 0.3);
+  for (DepthImage& view : views) {
     for (int row = 30; row < view.height_px; ++row) {
       const double depth_m = kAboveDeckM * 60.0 / (row - 29.5);
       if (depth_m < kEndM) Paint({0, 80, row, row + 1}, static_cast<float>(depth_m), view);
