@@ -180,6 +180,8 @@ Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_sl
   return went_on;
 }
 
+double ShareOfGap(double gap_s) { return std::clamp(gap_s / kSurpriseS, 1.0, kGuessedShare); }
+
 std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistory& history,
                                       int newest_mapped) {
   const FrameRecord* first = history.Find(loop.first_frame);

@@ -78,6 +78,9 @@ struct Extrapolation {
 };
 Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);
 
+// MappedFrame::gap_share of the frame after a gap of so many seconds in SLAM's motion.
+double ShareOfGap(double gap_s);
+
 // Converts a loop between two frames to one between mapped frames, using SLAM's motion within an
 // epoch. Empty if a frame is unknown, has no pose or nothing near it is mapped. `newest_mapped`:
 // index that the newest frame will have, or -1.

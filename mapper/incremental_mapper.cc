@@ -159,9 +159,11 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   }
   std::vector<MappedFrame> frames = mapped.all();
   const bool provisional = scans.matched && frame.slam_from_camera;
+  EpochStart start;
   if (provisional) {
-    frames.push_back(mapped.WithScans(
-        AsMapped(SameEpoch() ? CarriedOn() : BegunAt(nullptr).map_from_base), scans));
+    start = SameEpoch() ? EpochStart{CarriedOn()} : BegunAt(nullptr);
+    const double variance = gap_variance + start.gap_share * start.gap_share;
+    frames.push_back(mapped.WithScans(AsMapped(start.map_from_base, variance), scans));
   }
   LoopCloser::Outcome outcome =
       loop_closer.Close(frame.loops, history, frames, provisional, *reference, errors.Mapped());
@@ -172,7 +174,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   const Pose2 newest = outcome.map_from_base.back();
   outcome.map_from_base.resize(mapped.all().size());
   MoveTo(outcome.map_from_base, outcome.covariance);
-  if (provisional) Anchor({newest, 0.0});
+  if (provisional) Anchor({newest, 0.0, start.gap_share});
 }
 
 // Adjusts poses and map during the run; returns SLAM's noise if it could be estimated.
@@ -328,7 +330,7 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
                                       const FusedPose& fused, FrameReport& report) {
   const StageTimer timer(clocks, report.times.insert_us);
   if (!scans.matched || fixed_map || !IsOnAMap(fused.map_from_base)) return;
-  MappedFrame frame = AsMapped(fused.map_from_base);
+  MappedFrame frame = AsMapped(fused.map_from_base, gap_variance);
   frame.match = report.match;
   // In a report it is in axes of the predicted pose.
   frame.match.information =
@@ -356,13 +358,15 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
         prediction.map_from_base *
         Pose2::FromVector(filter.step().state_gain.topRows<3>() * fused.innovation);
     if (added.slam_motion) reference->Corrected(prediction.map_from_base, corrected);
+    // Groups do not reach across a gap: loops may open it, nothing else may give way in its place.
+    if (!added.slam_motion) reference->BeginPart(PartPlace::kKnown);
     reference->Insert(scans.kept(), fused.map_from_base, fused.covariance);
   } else {
     reference->InsertTied(scans.matched, fused.map_from_base, added.tied_to);
   }
 }
 
-MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const {
+MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base, double variance) const {
   const FrameRecord& record = history.newest();
   MappedFrame frame;
   frame.frame = record.index;
@@ -376,8 +380,9 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base) const
       frame.slam_motion =
           Between(BaseOf(*before.slam_from_camera), BaseOf(*record.slam_from_camera));
     } else {
-      // Zero: a loop of this very frame decides where it is, not a guess.
-      frame.gap_share = gap_variance > 0.0 ? std::sqrt(gap_variance) : 1.0;
+      // From one frame to the next the last motion goes on; else the longer, the less is known.
+      frame.gap_share =
+          variance < 1.0 ? std::sqrt(variance) : ShareOfGap(record.stamp_s - before.stamp_s);
     }
   }
   return frame;

@@ -72,7 +72,7 @@ void MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
 void MappedFrames::ForgetMotionTo(int position) {
   MappedFrame& frame = frames_[static_cast<std::size_t>(position)];
   frame.slam_motion.reset();
-  frame.gap_share = 1.0;
+  frame.gap_share = kGuessedShare;
 }
 
 std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,

@@ -135,7 +135,9 @@ struct IncrementalMapper::State {
   std::optional<Pose2> SlamsWord() const;
   void BeginEpoch(const std::shared_ptr<const Scan>& scan);
   void Anchor(const EpochStart& start);
-  MappedFrame AsMapped(const Pose2& map_from_base) const;
+  // `variance`: square of MappedFrame::gap_share if the motion of one frame went on, else 1 or
+  // more.
+  MappedFrame AsMapped(const Pose2& map_from_base, double variance) const;
   struct FinalEstimate {
     std::vector<Pose2> map_from_base;                   // of the mapped frames
     std::vector<std::optional<Pose3>> map_from_camera;  // of all frames

@@ -19,10 +19,11 @@ namespace {
 // in CloseLoops(), which only has to bring revisits within the gate.
 const Eigen::Vector3d kOnlineSigma(0.005, 0.005, 0.003);
 // Across a gap in SLAM's motion, groups are held to their relative pose in the online estimate (as
-// bent by loops), in case the two sides have no landmark in common.
+// bent by loops), in case the two sides have no landmark in common; at most as loosely as by
+// kEpochSigma.
 constexpr double kGapHuberSigmas = 2.0;
-// In CloseLoops() a gap yields to loops entirely. With Huber's weight, a loop that turns all beyond
-// the gap would lose (docs/math.md, "Epochs").
+// In CloseLoops() a gap yields to loops entirely, the longest first. With Huber's weight, a loop
+// that turns all beyond the gap would lose (docs/math.md, "Epochs").
 constexpr double kGapCauchySigmas = 2.0;
 // Measured: 2 steps where nothing has to move, 8 for a gap of 24 m, 12 to 20 and more for a gap off
 // by a few sigmas only, where Cauchy's weight falls slowly.
@@ -96,10 +97,9 @@ double Step(const PoseMatrix& factored, const Eigen::VectorXd& g,
 }
 
 // Link from the previous group across a gap, with the relative pose of `map_from_group`.
-GroupLink GapLink(std::size_t group, const GroupMotion& motion,
-                  const std::vector<Pose2>& map_from_group) {
+GroupLink GapLink(std::size_t group, double gap_share, const std::vector<Pose2>& map_from_group) {
   const int second = static_cast<int>(group);
-  const Eigen::Vector3d gap_sigma = motion.gap_share * kEpochSigma;
+  const Eigen::Vector3d gap_sigma = gap_share * kEpochSigma;
   return {second - 1, second, Between(map_from_group[group - 1], map_from_group[group]),
           (gap_sigma.cwiseAbs2() + kOnlineSigma.cwiseAbs2()).cwiseSqrt()};
 }
@@ -113,7 +113,7 @@ std::vector<GroupLink> SettledLinks(const Problem& problem, const std::vector<Po
     const int second = static_cast<int>(g);
     if (motion.tie) links.push_back(*motion.tie);
     if (!motion.known) {
-      links.push_back(GapLink(g, motion, before));
+      links.push_back(GapLink(g, std::min(motion.gap_share, 1.0), before));
       links.back().huber_sigmas = kGapHuberSigmas;
       continue;
     }
@@ -131,7 +131,7 @@ void CloseLoops(const Problem& problem, const std::vector<GroupLink>& loops,
     const int second = static_cast<int>(g);
     const GroupMotion& motion = problem.motions[g];
     if (!motion.known && !motion.tie) {
-      links.push_back(GapLink(g, motion, map_from_group));
+      links.push_back(GapLink(g, motion.gap_share, map_from_group));
       links.back().cauchy_sigmas = kGapCauchySigmas;
       continue;
     }

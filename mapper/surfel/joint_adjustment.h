@@ -68,6 +68,7 @@ struct GroupMotion {
   // Between groups of a prior map: the relative pose in that map, not SLAM's motion.
   bool of_prior_map = false;
   // Where not `known`: how well the online estimate knows the motion, as a multiple of kEpochSigma.
+  // Long gaps have more than 1.
   double gap_share = 1.0;
   // Set when the frame before the group's first belongs to an earlier group: the link from that
   // group.

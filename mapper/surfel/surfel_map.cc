@@ -255,6 +255,7 @@ SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustE
   // A provisional last frame was not inserted yet.
   SurfelGroups groups = groups_;
   for (std::size_t i = groups.places().size(); i < frames.size(); ++i) {
+    if (!frames[i].slam_motion) groups.BeginPart();
     groups.Add(maker_.Make(*frames[i].scan, noise_, 1), frames[i].map_from_base);
   }
   return joined(groups);

@@ -65,6 +65,26 @@ TEST(EpochGap, OverSeveralItIsNot) {
   EXPECT_DOUBLE_EQ(GapShare(frames), 1.0);
 }
 
+TEST(EpochGap, TheLongerTheLessIsKnown) {
+  std::vector<Frame> frames = JumpingFrames();
+  LoseFrames(frames, 20);
+  EXPECT_NEAR(GapShare(frames), 21.0 * kFrameStepS / 0.3, 1e-9);
+}
+
+// SLAM corrects its poses by a loop of this frame: the camera went on as it did.
+TEST(EpochGap, ALoopOfTheFrameLeavesItAsWellKnown) {
+  std::vector<Frame> frames = JumpingFrames();
+  Frame& back = frames[kNewEpochFrom];
+  const Frame& first = frames[2];
+  back.loops.push_back({.first_frame = first.index,
+                        .second_frame = back.index,
+                        .first_from_second = Inverse(CameraOf({1.54, 1.6, 0.0}, 1.0)) *
+                                             CameraOf({2.1, 1.6, 0.0}, 1.0),
+                        .sigma_translation_m = 0.01,
+                        .sigma_rotation_rad = 0.005});
+  EXPECT_NEAR(GapShare(frames), std::pow(kFrameStepS / 0.3, 2), 1e-9);
+}
+
 // Stamps 0.1 s apart are so but for rounding.
 TEST(EpochGap, AtTenHertzOneFrameIsOneWhateverTheClockCountsFrom) {
   for (const double from_s : {0.0, 1.3e9, 1.3e9 + 0.3}) {
