@@ -93,9 +93,9 @@ double FrameHistory::LongestUsualWayM(const FrameRecord& since) const {
   return kFar * static_cast<double>(&newest() - &since) * UsualMotionSoFar().WayPerFrameM();
 }
 
-int FrameHistory::FramesToNewest() const {
+// Usual steps from the frame before to the newest.
+int FrameHistory::StepsToNewest() const {
   constexpr std::size_t kRecentSteps = 15;
-  if (records_.size() < 2 || !newest().slam_from_camera || WasLost()) return 1;
   std::array<double, kRecentSteps> steps_s;
   std::size_t count = 0;
   for (std::size_t i = records_.size() - 2; i > 0 && count < kRecentSteps; --i) {
@@ -103,8 +103,22 @@ int FrameHistory::FramesToNewest() const {
     if (step_s > 0.0) steps_s[count++] = step_s;
   }
   const FrameRecord& before = records_[records_.size() - 2];
-  const int steps =
-      StepsIn(newest().stamp_s - before.stamp_s, UsualStepS(std::span(steps_s).first(count)));
+  return StepsIn(newest().stamp_s - before.stamp_s, UsualStepS(std::span(steps_s).first(count)));
+}
+
+bool FrameHistory::HadPause() const {
+  constexpr double kPauseS = 0.5;
+  constexpr int kPauseSteps = 5;
+  if (records_.size() < 2 || !newest().slam_from_camera || WasLost()) return false;
+  const FrameRecord& before = records_[records_.size() - 2];
+  return before.slam_from_camera && newest().stamp_s - before.stamp_s >= kPauseS &&
+         StepsToNewest() >= kPauseSteps;
+}
+
+int FrameHistory::FramesToNewest() const {
+  if (records_.size() < 2 || !newest().slam_from_camera || WasLost()) return 1;
+  const FrameRecord& before = records_[records_.size() - 2];
+  const int steps = StepsToNewest();
   if (steps <= kFewSteps) return steps;  // UsualMotionSoFar() is costly and only needed below
   return MovingStepsIn(steps, MotionOf(before, newest()), UsualMotionSoFar());
 }

@@ -42,6 +42,9 @@ class FrameHistory {
   // Whether SLAM returns with the newest frame after frames without pose or in a new epoch. A pause
   // of the recording is no loss.
   bool WasLost() const;
+  // Whether the newest frame comes after a pause of the recording: half a second and five usual
+  // steps. SLAM may have gone elsewhere meanwhile.
+  bool HadPause() const;
   // Whether SLAM's newest motion is far larger than usual for the number of frames since the last
   // pose.
   bool OutranUsualMotion() const;
@@ -61,6 +64,7 @@ class FrameHistory {
   // The first entry whose index is not less.
   Positions::const_iterator PlaceOf(int frame_index) const;
   UsualMotion UsualMotionSoFar() const;
+  int StepsToNewest() const;
 
   Positions position_of_index_;
   SlamEpochs epochs_;

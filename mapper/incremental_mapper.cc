@@ -187,16 +187,21 @@ std::optional<MotionSpread> IncrementalMapper::State::AdjustBetweenFrames() {
   return spread;
 }
 
-// The first scan after a loss decides whether the guess is doubted.
+// The first scan after a loss, or a pause, decides whether the guess is doubted.
 void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   if (!reference || fixed_map || mapped.empty()) return;
-  if (history.WasLost()) {
+  if (history.WasLost() || history.HadPause()) {
     const FrameRecord& before = *history.PosedBefore(history.newest());
-    std::optional<Pose2> step;
-    if (before.epoch != history.newest().epoch || history.OutranUsualMotion()) {
-      step = Between(BaseOf(*before.slam_from_camera), BaseOf(*history.newest().slam_from_camera));
+    const Pose2 step =
+        Between(BaseOf(*before.slam_from_camera), BaseOf(*history.newest().slam_from_camera));
+    const double duration_s = report.stamp_s - before.stamp_s;
+    if (history.HadPause()) {
+      relocation.Paused(duration_s, step);
+    } else if (before.epoch != history.newest().epoch || history.OutranUsualMotion()) {
+      relocation.Lost(duration_s, step);
+    } else {
+      relocation.Lost(duration_s, std::nullopt);
     }
-    relocation.Lost(report.stamp_s - before.stamp_s, step);
   }
   if (report.beams == 0) return;  // without returns there is nothing to judge by
   const double share = report.match.found ? report.match.score : 0.0;

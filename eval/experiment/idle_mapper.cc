@@ -21,7 +21,8 @@ void AddScan(const ScanOptions& scan, IdleSettingList& idle) {
   const bool is_full = scan.mode == ScanMode::kFull;
   if (!is_full) idle.push_back({"mapper.scan.slice_half_height_m", mode});
   if (is_full && scan.slice_half_height_m > 0.0) return;
-  for (const char* key : {"mapper.scan.slice_agree_sigmas", "mapper.scan.drop_cut_ends"}) {
+  for (const char* key : {"mapper.scan.slice_agree_sigmas", "mapper.scan.slice_lean_sigmas",
+                          "mapper.scan.drop_cut_ends"}) {
     idle.push_back({key, is_full ? Stands(scan, "mapper.scan", "slice_half_height_m") : mode});
   }
 }

@@ -77,6 +77,12 @@ void Relocation::Lost(double duration_s, const std::optional<Pose2>& step) {
       unjudged_ || duration_s >= (elsewhere ? options_.min_lost_epoch_s : options_.min_lost_s);
 }
 
+void Relocation::Paused(double duration_s, const Pose2& step) {
+  if (duration_s >= options_.min_lost_epoch_s && IsElsewhere(duration_s, step)) {
+    Lost(duration_s, step);
+  }
+}
+
 // SLAM that relocalises in its own map makes no such step.
 bool Relocation::IsElsewhere(double duration_s, const Pose2& step) const {
   return step.translation().norm() > kStepM + options_.speed_mps * duration_s ||

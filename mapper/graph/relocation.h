@@ -63,6 +63,9 @@ class Relocation {
   // Reports a loss: time without pose before this frame and, if SLAM may have restarted, the
   // difference between its poses.
   void Lost(double duration_s, const std::optional<Pose2>& step);
+  // Reports a pause of the recording. SLAM's step over it is believed unless no robot makes it in
+  // that time (speed_mps).
+  void Paused(double duration_s, const Pose2& step);
   // Decides, from the map's explained share of the first scan after a loss, whether the guess is
   // doubtful. If so, begins the search; `next_frame` is the first mapped frame of the new part.
   bool BeginIfDoubtful(double share, int next_frame);

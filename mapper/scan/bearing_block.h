@@ -145,5 +145,8 @@ NearestOfBlock FindSupported(const BandFound& found, std::size_t rows, const Ret
 // SteadyRange() of all lanes with a hit. `found`: of the slice.
 void SteadySlice(const ImageBands& bands, const NoiseWindow& window, const BearingBlock& block,
                  const BandFound& found, BlockHits& hits);
+// LeaningRange() of all lanes with a hit.
+void LeanSlice(const ImageBands& bands, const NoiseWindow& window, const BearingBlock& block,
+               const BandFound& found, BlockHits& hits);
 
 }  // namespace depthgrid::internal

@@ -146,6 +146,9 @@ void FindReturnsOfBlock(const ReturnsJob& job, const BearingBlock& block, std::s
   if (job.bands.slice.agree_sigmas > 0.0F) {
     internal::SteadySlice(job.bands, job.window, block, found.slice, all.slice[at]);
   }
+  if (job.bands.slice.lean_sigmas > 0.0F) {
+    internal::LeanSlice(job.bands, job.window, block, found.slice, all.slice[at]);
+  }
 }
 
 // A number of neighbouring blocks that are read together.

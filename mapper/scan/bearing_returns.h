@@ -30,10 +30,13 @@ struct SliceBand {
   float high_m = 0.0F;
   // Limit of SteadyRange(); 0: treat the band as one surface.
   float agree_sigmas = 0.0F;
+  // Limit of LeaningRange(); 0: none leans.
+  float lean_sigmas = 0.0F;
 
   // The core, the inner half of its heights.
   float CoreLowM() const { return 0.5F * (low_m + high_m) - 0.25F * (high_m - low_m); }
   float CoreHighM() const { return 0.5F * (low_m + high_m) + 0.25F * (high_m - low_m); }
+  float MiddleM() const { return 0.5F * (low_m + high_m); }
 };
 
 // Image rows; empty if first > last.
@@ -110,6 +113,34 @@ float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
 float SteadyRange(std::span<const float> samples, int first_row, const BearingLine& line,
                   const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
                   float range_m);
+
+// Where a surface leans or is round, the noise window holds its nearest part nearby and all of it
+// far away, so the height that is met would change with the distance. The surface that lies at the
+// slice's middle height is followed up and down from there, and where a line through its ranges
+// over their heights leans by more than `lean_sigmas` of its slope's sigma, the range is the line's
+// at the middle height. Not so where the core leans by less (a step) or what was found stands before
+// that surface. `range_m`: from SteadyRange(); returned where nothing leans.
+float LeaningRange(std::span<const float> samples, int first_row, const BearingLine& line,
+                   const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
+                   float range_m);
+
+// The limits by which LeaningRange() follows a surface.
+struct LeaningLimits {
+  // The next sample may be off by this many sigmas, and by 1.2 (50 degrees) times its way up.
+  static constexpr float kNextSigmas = 3.5F;
+  static constexpr float kSteepest = 1.2F;
+  // More samples than this, one after the other, that are off end the surface.
+  static constexpr float kMostMisses = 2.0F;
+  // Needed in all, and above and below the middle each.
+  static constexpr float kLeastSamples = 5.0F;
+  static constexpr float kLeastOfHalf = 2.0F;
+  // A line that leans by less (6 degrees) is taken for upright.
+  static constexpr float kLeastLean = 0.1F;
+  // A surface whose core leans by less than this share of that is stepped.
+  static constexpr float kLeastOfCore = 0.5F;
+  // What is nearer than the surface by more sigmas stands before it.
+  static constexpr float kBeforeSigmas = 3.0F;
+};
 
 // Usable rows of a block of lines, and the rows around their longest gaps below and above the
 // horizon.

@@ -144,7 +144,8 @@ ScanPair DepthToScan::ConvertBoth(const DepthImage& depth, const CameraStand& st
       LimitsOf(slice_options, camera_, reading.transposed, -slice.low_m, window);
   ImageReturns& returns = FindReturns(*reading.image, memory.lines, limits,
                                       SliceBand{slice_limits.low_m, slice_limits.high_m,
-                                                static_cast<float>(options_.slice_agree_sigmas)},
+                                                static_cast<float>(options_.slice_agree_sigmas),
+                                                static_cast<float>(options_.slice_lean_sigmas)},
                                       window, memory.returns);
   FindViews(memory.lines, returns.views, memory.views);
   return {ScanOf(*reading.image, {options_, limits, stand.height_m}, returns.obstacles, memory,

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -45,6 +46,81 @@ CoreRows CoreRowsAt(const BearingLine& line, const SliceBand& slice, float range
   const float b = RowAtSlope(line, slice.CoreLowM() / range_m);
   return a < b ? CoreRows{a, b} : CoreRows{b, a};
 }
+
+// Sums over samples, for a line through their ranges over their heights.
+struct LineSums {
+  float n = 0.0F, h = 0.0F, r = 0.0F, hh = 0.0F, hr = 0.0F;
+
+  void Add(float behind_m, float height_m) {
+    n += 1.0F;
+    h += height_m;
+    r += behind_m;
+    hh += height_m * height_m;
+    hr += height_m * behind_m;
+  }
+  float Det() const { return n * hh - h * h; }
+  float Lean() const { return (n * hr - h * r) / Det(); }
+  float AtZero() const { return (hh * r - h * hr) / Det(); }
+};
+
+// A surface followed through a slice: its samples as heights above the middle and ranges behind the
+// first one.
+class Leaning {
+ public:
+  Leaning(float from_m, float height_m, float sigma_m, float core_m)
+      : from_m_(from_m), sigma_m_(sigma_m), core_m_(core_m) {
+    Take(0.0F, height_m);
+    Restart(height_m);
+  }
+  // Follow() goes on from the first sample.
+  void Restart(float height_m) {
+    last_m_ = 0.0F;
+    last_height_m_ = height_m;
+    misses_ = 0.0F;
+  }
+  void Follow(float range_m, float height_m) {
+    if (misses_ > LeaningLimits::kMostMisses) return;
+    const float behind_m = range_m - from_m_;
+    const float most_m = LeaningLimits::kNextSigmas * sigma_m_ +
+                         LeaningLimits::kSteepest * std::abs(height_m - last_height_m_);
+    if (std::abs(behind_m - last_m_) > most_m) {
+      misses_ += 1.0F;
+      return;
+    }
+    misses_ = 0.0F;
+    last_m_ = 0.5F * (last_m_ + behind_m);
+    last_height_m_ = height_m;
+    Take(behind_m, height_m);
+  }
+  float RangeOr(float range_m, float lean_sigmas) const {
+    if (below_ < LeaningLimits::kLeastOfHalf || above_ < LeaningLimits::kLeastOfHalf) {
+      return range_m;
+    }
+    const float det = all_.Det();
+    if (all_.n < LeaningLimits::kLeastSamples || !(det > 0.0F)) return range_m;
+    const float lean = all_.Lean();
+    const float sigma = sigma_m_ * std::sqrt(all_.n / det);
+    if (!(std::abs(lean) >= std::max(lean_sigmas * sigma, LeaningLimits::kLeastLean))) {
+      return range_m;
+    }
+    if (!(core_.Lean() * lean >= LeaningLimits::kLeastOfCore * (lean * lean))) return range_m;
+    if (range_m < from_m_ + nearest_m_ - LeaningLimits::kBeforeSigmas * sigma_m_) return range_m;
+    return from_m_ + all_.AtZero();
+  }
+
+ private:
+  void Take(float behind_m, float height_m) {
+    all_.Add(behind_m, height_m);
+    if (std::abs(height_m) <= core_m_) core_.Add(behind_m, height_m);
+    (height_m < 0.0F ? below_ : above_) += 1.0F;
+    nearest_m_ = std::min(nearest_m_, behind_m);
+  }
+
+  float from_m_, sigma_m_, core_m_;
+  float last_m_ = 0.0F, last_height_m_ = 0.0F, misses_ = 0.0F;
+  LineSums all_, core_;
+  float below_ = 0.0F, above_ = 0.0F, nearest_m_ = 0.0F;
+};
 
 bool Agree(const Sum& part, const Sum& core, float limit_m) {
   if (part.count == 0.0F) return true;
@@ -165,6 +241,41 @@ float SteadyRange(std::span<const float> samples, int first_row, const BearingLi
     if (samples[i] >= centre_m - half_m && samples[i] <= up_to(centre_m)) steady.Add(samples[i]);
   }
   return steady.count < needed ? range_m : steady.Mean();
+}
+
+float LeaningRange(std::span<const float> samples, int first_row, const BearingLine& line,
+                   const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
+                   float range_m) {
+  if (slice.lean_sigmas <= 0.0F) return range_m;
+  const float width_m = window.At(range_m);
+  const float half_m = 0.5F * width_m;
+  const auto height_at = [&](std::size_t i) {
+    const auto row = static_cast<float>(first_row + static_cast<int>(i));
+    const float slope = (line.g0 + line.g1 * row) / (line.h0 + line.h1 * row);
+    return samples[i] * slope - slice.MiddleM();
+  };
+  bool is_wide = false;  // some of it is outside the noise window
+  float least_m = std::numeric_limits<float>::infinity();
+  std::size_t middle = 0;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (!(samples[i] <= limits.max_range_m)) continue;
+    is_wide = is_wide || samples[i] < range_m - half_m || samples[i] > range_m + half_m;
+    const float off_m = std::abs(height_at(i));
+    if (!(off_m < least_m)) continue;
+    least_m = off_m;
+    middle = i;
+  }
+  if (!is_wide) return range_m;
+  Leaning surface(samples[middle], height_at(middle), NoiseWindow::kSigmaShare * width_m,
+                  slice.CoreHighM() - slice.MiddleM());
+  for (std::size_t i = middle; i-- > 0;) {
+    if (samples[i] <= limits.max_range_m) surface.Follow(samples[i], height_at(i));
+  }
+  surface.Restart(height_at(middle));
+  for (std::size_t i = middle + 1; i < samples.size(); ++i) {
+    if (samples[i] <= limits.max_range_m) surface.Follow(samples[i], height_at(i));
+  }
+  return surface.RangeOr(range_m, slice.lean_sigmas);
 }
 
 }  // namespace depthgrid

@@ -26,6 +26,9 @@ void ScanOptions::Visit(OptionsVisitor& v) {
   v.Number("slice_agree_sigmas", slice_agree_sigmas, {0.0, 1000.0},
            "where the slice's upper or lower part stands farther from its inner half than this "
            "many sigmas, the inner half alone is matched; 0 takes all for one surface");
+  v.Number("slice_lean_sigmas", slice_lean_sigmas, {0.0, 1000.0},
+           "where the slice's surface leans by more sigmas than this, it is matched at the slice's "
+           "middle height; 0 takes all for upright");
   v.Flag(
       "drop_cut_ends", drop_cut_ends,
       "whether the end of a wall that recedes beyond the camera's reach is left out of matching");

@@ -40,20 +40,35 @@ BearingReturns PlainReturns(const DepthImage& image, const BearingLine& line,
   return returns;
 }
 
-float PlainSteadyRange(const DepthImage& image, const BearingLine& line, const SliceBand& slice,
-                       const ReturnLimits& limits, const NoiseWindow& window, float range_m) {
+struct SliceRanges {
+  float steady_m = 0.0F, leaning_m = 0.0F;
+};
+SliceRanges PlainSliceRanges(const DepthImage& image, const BearingLine& line,
+                             const SliceBand& slice, const ReturnLimits& limits,
+                             const NoiseWindow& window, float range_m) {
   const RowRange rows = RowsOf(line, limits);
   std::vector<float> samples;
   for (int v = rows.first; v <= rows.last; ++v) {
     samples.push_back(SampleAt(image, line, limits, v));
   }
-  return SteadyRange(samples, rows.first, line, slice, limits, window, range_m);
+  const float steady_m = SteadyRange(samples, rows.first, line, slice, limits, window, range_m);
+  return {steady_m, LeaningRange(samples, rows.first, line, slice, limits, window, steady_m)};
 }
 
 // Single pixels that are too near: nearest, but not supported.
 void AddStrays(DepthImage& image, double share, RandomStream& random) {
   for (float& z_m : image.z_m) {
     if (random.Uniform() < share) z_m *= 0.7F;
+  }
+}
+
+// What is seen in the left third leans away from the camera by some 40 degrees.
+void LeanLeftThird(DepthImage& image, const PinholeCamera& camera) {
+  for (int v = 0; v < image.height_px; ++v) {
+    const double up = (camera.cy_px - v) / camera.fy_px;
+    for (int u = 0; u < image.width_px / 3; ++u) {
+      image.Row(v)[u] *= static_cast<float>(1.0 / std::max(1.0 - 0.8 * up, 0.2));
+    }
   }
 }
 
@@ -107,17 +122,18 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   RandomStream random(11, RandomStage::kTest);
   ReturnsMemory memory;
   BearingFan fan;
-  int cases = 0, hits = 0, slice_hits = 0, gaps = 0, unsteady = 0, narrow = 0;
+  int cases = 0, hits = 0, slice_hits = 0, gaps = 0, unsteady = 0, leaning = 0, narrow = 0;
   for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}}) {
     if ((hwy::SupportedTargets() & target) == 0) continue;
     Choose(target);
-    for (int i = 0; i < 48; ++i) {
+    for (int i = 0; i < 80; ++i) {
       const PinholeCamera& camera = cameras[static_cast<std::size_t>(i) % cameras.size()];
       const double pitch_rad = random.Uniform(-1.0, 1.0) * (i % 3 == 0 ? 1.5 : 0.4);
       const double roll_rad = random.Uniform(-1.0, 1.0) * (i % 5 == 0 ? 3.1 : 0.4);
       const Pose3 pose =
           TiltedCamera({-1.0, 0.1, random.Uniform(-0.5, 0.5)}, 1.15, pitch_rad, roll_rad);
       DepthImage image = room.Render(camera, pose);
+      if (i % 5 > 2) LeanLeftThird(image, camera);
       if (i % 4 != 3) AddNoise(image, i % 8 == 2 ? 0.1 : 0.004, random);
       if (i % 4 == 1) AddStrays(image, 0.001, random);
       if (i % 4 > 1) Damage(image, random);
@@ -133,7 +149,8 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
       limits.first_row = i % 6 == 0 ? camera.height_px / 3 : 0;
       limits.last_row = camera.height_px - 1;
       const NoiseWindow window(image);
-      const SliceBand band{-0.1F, static_cast<float>(0.2 - 0.1), i % 2 == 0 ? 2.5F : 0.0F};
+      const SliceBand band{-0.1F, static_cast<float>(0.2 - 0.1), i % 2 == 0 ? 2.5F : 0.0F,
+                           i % 3 > 0 ? 6.0F : 0.0F};
       ReturnLimits slice_limits = limits;
       slice_limits.low_m = band.low_m;
       slice_limits.high_m = band.high_m;
@@ -153,9 +170,11 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
         BearingReturns plain_slice = PlainReturns(image, lines[k], slice_limits, window, true);
         if (plain_slice.hit) {
           const float whole_m = plain_slice.range_m;
-          plain_slice.range_m =
-              PlainSteadyRange(image, lines[k], band, slice_limits, window, whole_m);
-          unsteady += plain_slice.range_m != whole_m ? 1 : 0;
+          const auto [steady_m, leaning_m] =
+              PlainSliceRanges(image, lines[k], band, slice_limits, window, whole_m);
+          plain_slice.range_m = leaning_m;
+          unsteady += steady_m != whole_m ? 1 : 0;
+          leaning += leaning_m != steady_m ? 1 : 0;
         }
         ASSERT_EQ(both.At(k, both.slice), plain_slice) << i << " " << k;
         slice_hits += plain_slice.hit ? 1 : 0;
@@ -170,6 +189,7 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   EXPECT_GE(hits, 2000);
   EXPECT_GE(slice_hits, 2000);
   EXPECT_GE(unsteady, 50);
+  EXPECT_GE(leaning, 50);
   EXPECT_GE(narrow, 100);
   EXPECT_GE(gaps, 600);
 }

@@ -57,7 +57,8 @@ TEST(FrameScanner, ObstaclesAreTheNearestSurfaceAndTheSliceIsLevelWithTheCamera)
 
 TEST(FrameScanner, BothScansAreThoseOfTwoConversions) {
   ScanOptions options;
-  options.slice_agree_sigmas = 0.0;  // which no scan of obstacles knows
+  options.slice_agree_sigmas = 0.0;  // neither of which a scan of obstacles knows
+  options.slice_lean_sigmas = 0.0;
   ScanOptions slice = options;
   slice.band_low_m = 0.0;
   slice.band_high_m = 2.0 * options.slice_half_height_m;
@@ -116,6 +117,16 @@ TEST(FrameScanner, AStepAboveTheCameraDoesNotMoveTheSlice) {
 TEST(FrameScanner, ALeaningWallIsMetAtTheCamerasHeight) {
   const Frame frame = NoisyFrame([](double rise) { return 3.0 / (1.0 - 0.2 * rise); }, 2);
   EXPECT_NEAR(MeanForwardM(MatchedScan(frame, kAgreeSigmas)), 3.0, 1e-3);
+}
+
+// A ball's edge or a roof's: from near by its nearest part alone would lie within the noise.
+TEST(FrameScanner, ASteepSurfaceIsMetAtTheCamerasHeightFromAnyDistance) {
+  for (const double lean : {-0.7, -0.35, 0.35, 0.7}) {
+    for (const double wall_m : {0.8, 1.5, 2.5, 4.0}) {
+      const Frame frame = NoisyFrame([&](double rise) { return wall_m / (1.0 - lean * rise); }, 3);
+      EXPECT_NEAR(MeanForwardM(MatchedScan(frame, kAgreeSigmas)), wall_m, 3e-3) << lean;
+    }
+  }
 }
 
 TEST(FrameScanner, OfAFlatWallNearlyAllBearingsTakeTheWholeSlice) {

@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
 
 #include "mapper/core/level.h"
 #include "mapper/core/usual_step.h"
 #include "mapper/frame_history.h"
 #include "mapper/fuse/drift_tracker.h"
+#include "mapper/incremental_mapper.h"
+#include "tests/mapper/match_world.h"
 
 namespace depthgrid {
 namespace {
@@ -124,6 +129,35 @@ TEST(DriftTracker, BelievesSlamsMotionOverAPauseLess) {
   // The next one is one frame again.
   tracker.Commit({0.1, 0.0, 0.0}, {0.1, 0.0, 0.0}, Eigen::Matrix3d::Zero(), match);
   EXPECT_LT(tracker.Predict({0.2, 0.0, 0.0}).covariance(0, 0), 2.0 * variance);
+}
+
+// Nobody tells that the tracker went elsewhere while the recording paused for a second; no robot
+// goes that far meanwhile.
+TEST(Pause, AStepOverItThatNoRobotMakesIsSearchedFor) {
+  constexpr int kBefore = 240, kFrames = 400;
+  const PlanarWorld room = FurnishedRoom();
+  const auto round_the_room = [](int frame) {
+    const double angle_rad = 2.0 * kPi * frame / 240;
+    return Pose2{3.0 + 0.7 * std::cos(angle_rad), 1.7 + 0.7 * std::sin(angle_rad),
+                 WrapAngle(angle_rad + 0.5 * kPi)};
+  };
+  IncrementalMapper mapper({}, std::nullopt);
+  for (int i = 0; i < kFrames; ++i) {
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0 + (i < kBefore ? 0.0 : 0.9);
+    const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+    frame.scan = std::make_shared<const Scan>(
+        ScanOf(room, round_the_room(i), laser, 4, static_cast<std::uint32_t>(i)));
+    const Pose2 off = i < kBefore ? Pose2{} : Pose2{4.0, 1.0, 0.9};
+    frame.slam_from_camera = CameraOf(off * round_the_room(i), 1.0);
+    mapper.AddFrame(frame);
+  }
+  const MapperResult result = mapper.Finish();
+  for (int i = kBefore; i < kFrames; ++i) {
+    const Pose2 pose = BaseOf(*result.map_from_camera[static_cast<std::size_t>(i)]);
+    ASSERT_LT((pose.translation() - round_the_room(i).translation()).norm(), 0.03) << i;
+  }
 }
 
 }  // namespace
