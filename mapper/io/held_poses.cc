@@ -4,18 +4,15 @@
 #include <utility>
 
 #include "mapper/core/median.h"
+#include "mapper/io/held_motion.h"
 
 namespace depthgrid {
 namespace {
 
-// The robot has moved if the median difference of the readings to an earlier scan exceeds this and
-// this many times the difference between successive scans, which is noise. Chosen: a robot at 0.5
-// m/s and 10 Hz is detected after four scans.
-constexpr double kMovedM = 0.05;
-constexpr double kTimesNoise = 2.0;
-// The scans are marked from where this share of the change was reached.
-constexpr double kBegunShare = 0.5;
-constexpr std::size_t kFewReadings = 20;
+using internal::kBegunShare;
+using internal::kFewReadings;
+using internal::kMovedM;
+using internal::kTimesNoise;
 
 // The median difference of the readings that both have; 0 if they are few.
 double DifferenceM(const std::vector<double>& a_m, const std::vector<double>& b_m) {

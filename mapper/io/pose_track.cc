@@ -6,6 +6,9 @@
 namespace depthgrid {
 namespace {
 
+// Stamps of poses at exactly the greatest gap differ from it by rounding, of 1.7e9 s by .24 us.
+constexpr double kRoundingS = 1e-6;
+
 Pose3 Blend(const Pose3& a, const Pose3& b, double share_of_b) {
   return {a.rotation.slerp(share_of_b, b.rotation).normalized(),
           a.translation + share_of_b * (b.translation - a.translation)};
@@ -58,7 +61,7 @@ PoseTrack::Found PoseTrack::Interpolated(double stamp_s) const {
   const double gap_s = stamps_s_[b] - stamps_s_[a];
   // No interpolation between epochs: SLAM changed the frame of its poses.
   if (!live_[a].slam_from_camera || !live_[b].slam_from_camera ||
-      live_[a].epoch != live_[b].epoch || gap_s > options_.max_interpolation_gap_s) {
+      live_[a].epoch != live_[b].epoch || gap_s > options_.max_interpolation_gap_s + kRoundingS) {
     return {};
   }
   const double share_of_b = (stamp_s - stamps_s_[a]) / gap_s;

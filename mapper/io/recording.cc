@@ -11,6 +11,7 @@
 #include "mapper/core/error.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/frozen_images.h"
+#include "mapper/io/held_frames.h"
 #include "mapper/io/images_ahead.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/pose_track.h"
@@ -62,6 +63,7 @@ class RecordingSource final : public FrameSource {
     RequireSeconds(recording_.images.back().stamp_s, recording_.images.back().depth_path);
     FindPoses(slam, options);
     Probe();
+    DropHeldPoses();
     next_ = recording_.part.begin;
     if (recording_.camera.camera.HasDistortion()) undistorter_.emplace(recording_.camera.camera);
     images_.emplace(next_, recording_.part.EndAmong(recording_.images.size()),
@@ -126,6 +128,27 @@ class RecordingSource final : public FrameSource {
           fmt::format("{}: loop closures left out, as they join frames that have no image: {}",
                       recording_.name, lost_loops));
     }
+  }
+
+  void DropHeldPoses() {
+    const auto begin = static_cast<std::ptrdiff_t>(recording_.part.begin);
+    std::vector<std::optional<Pose3>> poses;
+    for (std::size_t i = 0; i < ImagesOfPart(recording_).size(); ++i) {
+      poses.push_back(poses_[recording_.part.begin + i].slam_from_camera);
+    }
+    const std::vector<bool> held = HeldFrames(poses, [this](std::size_t i) {
+      return Read(recording_.images[recording_.part.begin + i]).depth;
+    });
+    const auto count = std::count(held.begin(), held.end(), true);
+    if (count == 0) return;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      if (held[i]) poses_[recording_.part.begin + i].slam_from_camera.reset();
+    }
+    recording_.warnings.push_back(fmt::format(
+        "{}: one pose is given again and again while the images move, first in frame {}: {} {} "
+        "taken for lost",
+        recording_.name, begin + (std::find(held.begin(), held.end(), true) - held.begin()),
+        Counted(static_cast<std::size_t>(count), "frame"), count == 1 ? "is" : "are"));
   }
 
   InputError NoImageHasPose(const SlamOutput& slam, const RecordingOptions& options) const {

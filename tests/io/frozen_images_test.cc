@@ -20,10 +20,11 @@ Pose3 MovedBy(double x_m, double z_m) { return {Eigen::Quaterniond::Identity(), 
 TEST(FrozenImages, AreThoseThatStayWhileTheCameraMoves) {
   FrozenImages images;
   EXPECT_FALSE(images.IsFrozen(ImageOf(2.0F), TurnedBy(0.0), 0.0, 0));
-  EXPECT_FALSE(images.IsFrozen(ImageOf(2.0F), TurnedBy(1.9), 0.03, 0));
-  EXPECT_TRUE(images.IsFrozen(ImageOf(2.0F), TurnedBy(2.5), 0.06, 0));
-  EXPECT_TRUE(images.IsFrozen(ImageOf(2.0F), MovedBy(0.0, 0.06), 0.09, 0));
-  EXPECT_TRUE(images.IsFrozen(ImageOf(2.0F), MovedBy(0.0, -0.06), 0.12, 0));
+  EXPECT_FALSE(images.IsFrozen(ImageOf(2.0F), TurnedBy(0.4), 0.03, 0));
+  EXPECT_TRUE(images.IsFrozen(ImageOf(2.0F), TurnedBy(0.6), 0.06, 0));
+  EXPECT_FALSE(images.IsFrozen(ImageOf(2.0F), MovedBy(0.0, 0.01), 0.09, 0));
+  EXPECT_TRUE(images.IsFrozen(ImageOf(2.0F), MovedBy(0.0, 0.016), 0.09, 0));
+  EXPECT_TRUE(images.IsFrozen(ImageOf(2.0F), MovedBy(0.0, -0.017), 0.12, 0));
   EXPECT_FALSE(images.IsFrozen(ImageOf(2.001F), TurnedBy(9.0), 0.15, 0));
 }
 

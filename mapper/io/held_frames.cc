@@ -1,0 +1,144 @@
+#include "mapper/io/held_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "mapper/core/median.h"
+#include "mapper/io/held_motion.h"
+
+namespace depthgrid {
+namespace {
+
+// Fewer frames of one pose may be several images near one pose's stamp.
+constexpr std::size_t kLeastFrames = 4;
+// A camera may be back where it was at the end: so many frames between are asked as well.
+constexpr std::size_t kProbes = 4;
+constexpr int kGridColumns = 40, kGridRows = 30;
+
+bool IsThere(float z_m) { return std::isfinite(z_m) && z_m > 0.0F; }
+
+// The median difference of depths at pixels that both images have; 0 if they are few.
+double DifferenceM(const DepthImage& a, const DepthImage& b) {
+  std::vector<double> differences_m;
+  if (a.width_px != b.width_px || a.height_px != b.height_px) return 0.0;
+  const int step_x = std::max(a.width_px / kGridColumns, 1);
+  const int step_y = std::max(a.height_px / kGridRows, 1);
+  for (int v = step_y / 2; v < a.height_px; v += step_y) {
+    for (int u = step_x / 2; u < a.width_px; u += step_x) {
+      const float z_a = a.Row(v)[u], z_b = b.Row(v)[u];
+      if (IsThere(z_a) && IsThere(z_b)) differences_m.push_back(std::abs(z_a - z_b));
+    }
+  }
+  return differences_m.size() < internal::kFewReadings ? 0.0
+                                                       : UpperMedian(std::move(differences_m));
+}
+
+// Frames of one pose, from the one whose pose is right: the first, or at the start the last.
+class Run {
+ public:
+  Run(std::size_t begin, std::size_t end, bool from_last, const ImageOfFrame& image)
+      : begin_(begin), end_(end), from_last_(from_last), image_(image), right_(image(At(0))) {}
+
+  // The number of frames, from the right one on, that are not held.
+  std::size_t CountRight() const {
+    const std::size_t size = end_ - begin_;
+    const auto next = image_(At(1));
+    if (!right_ || !next) return size;
+    const double moved_m = internal::kMovedM + internal::kTimesNoise * DifferenceM(*right_, *next);
+    for (std::size_t probe = 1; probe <= kProbes; ++probe) {
+      const std::size_t last = probe * (size - 1) / kProbes;
+      if (SinceRightM(last) > moved_m) return FirstBeyond(internal::kBegunShare * moved_m, last);
+    }
+    return size;
+  }
+  std::size_t At(std::size_t k) const { return from_last_ ? end_ - 1 - k : begin_ + k; }
+
+ private:
+  double SinceRightM(std::size_t k) const {
+    const auto there = image_(At(k));
+    return there ? DifferenceM(*right_, *there) : 0.0;
+  }
+  // Frames change more and more: bisects.
+  std::size_t FirstBeyond(double change_m, std::size_t last) const {
+    std::size_t below = 0;
+    while (last - below > 1) {
+      const std::size_t middle = below + (last - below) / 2;
+      (SinceRightM(middle) >= change_m ? last : below) = middle;
+    }
+    return last;
+  }
+
+  std::size_t begin_, end_;
+  bool from_last_;
+  const ImageOfFrame& image_;
+  std::shared_ptr<const DepthImage> right_;
+};
+
+struct PoseRun {
+  std::size_t begin = 0, end = 0;
+  std::size_t size() const { return end - begin; }
+};
+
+// Frames without a pose are in no run.
+std::vector<PoseRun> RunsOf(const std::vector<std::optional<Pose3>>& slam_from_camera) {
+  std::vector<PoseRun> runs;
+  for (std::size_t i = 0; i < slam_from_camera.size(); ++i) {
+    if (!slam_from_camera[i]) continue;
+    const bool goes_on =
+        !runs.empty() && runs.back().end == i && slam_from_camera[i] == slam_from_camera[i - 1];
+    if (!goes_on) runs.push_back({i, i});
+    runs.back().end = i + 1;
+  }
+  return runs;
+}
+
+// The runs after which the camera moved on at once.
+std::vector<PoseRun> MovingOf(const std::vector<PoseRun>& runs,
+                              const std::vector<std::optional<Pose3>>& slam_from_camera) {
+  constexpr double kMovesM = 0.005, kMovesRad = 0.005;
+  std::vector<PoseRun> moving;
+  for (std::size_t r = 0; r + 1 < runs.size(); ++r) {
+    if (runs[r].end != runs[r + 1].begin) continue;
+    const Pose3 step =
+        Inverse(*slam_from_camera[runs[r].begin]) * *slam_from_camera[runs[r + 1].begin];
+    if (step.translation.norm() > kMovesM || LogRotation(step.rotation).norm() > kMovesRad) {
+      moving.push_back(runs[r]);
+    }
+  }
+  return moving;
+}
+
+// Whether nearly every pose of the moving camera is given more than once: read more often than it
+// is made. No robot moves in jerks throughout.
+bool AreRepeated(const std::vector<PoseRun>& moving) {
+  constexpr std::size_t kLeastRuns = 20;
+  constexpr double kMostShare = 0.8;
+  const auto repeated = std::count_if(moving.begin(), moving.end(),
+                                      [](const PoseRun& run) { return run.size() > 1; });
+  return moving.size() >= kLeastRuns &&
+         static_cast<double>(repeated) >= kMostShare * static_cast<double>(moving.size());
+}
+
+}  // namespace
+
+std::vector<bool> HeldFrames(const std::vector<std::optional<Pose3>>& slam_from_camera,
+                             const ImageOfFrame& image) {
+  std::vector<bool> held(slam_from_camera.size(), false);
+  const std::vector<PoseRun> runs = RunsOf(slam_from_camera);
+  const std::vector<PoseRun> moving = MovingOf(runs, slam_from_camera);
+  if (AreRepeated(moving)) {
+    for (const PoseRun& run : moving) {
+      for (std::size_t i = run.begin + 1; i < run.end; ++i) held[i] = true;
+    }
+  }
+  if (runs.size() < 2) return held;
+  for (const PoseRun& all : runs) {
+    if (all.size() < kLeastFrames) continue;
+    const Run run(all.begin, all.end, &all == &runs.front(), image);
+    for (std::size_t k = run.CountRight(); k < all.size(); ++k) held[run.At(k)] = true;
+  }
+  return held;
+}
+
+}  // namespace depthgrid

@@ -1,0 +1,91 @@
+#include "mapper/io/held_frames.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "mapper/core/rng.h"
+
+namespace depthgrid {
+namespace {
+
+constexpr std::size_t kHeldTestFrames = 66;
+
+// The camera goes towards a wall at 2 cm a frame, or stands for its first 30 frames. Noise of 1 cm.
+ImageOfFrame ImagesTowardsAWall(bool stands_at_first = false) {
+  return [=](std::size_t i) {
+    auto image = std::make_shared<DepthImage>(64, 48);
+    RandomStream random(i, RandomStage::kTest);
+    const double steps =
+        stands_at_first ? std::max(static_cast<double>(i), 30.0) : static_cast<double>(i);
+    for (float& z_m : image->z_m) {
+      z_m = static_cast<float>(5.0 - 0.02 * steps + 0.01 * random.Normal());
+    }
+    return image;
+  };
+}
+
+// Poses as they were, but for frames from `begin` to before `end`, which have that of `begin`, or,
+// at the start, of `end`.
+std::vector<std::optional<Pose3>> PosesHeld(std::size_t begin, std::size_t end) {
+  std::vector<std::optional<Pose3>> poses;
+  for (std::size_t i = 0; i < kHeldTestFrames; ++i) {
+    const std::size_t of = i >= begin && i < end ? (begin == 0 ? end - 1 : begin) : i;
+    poses.push_back(
+        Pose3{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.02 * static_cast<double>(of)}});
+  }
+  return poses;
+}
+
+TEST(HeldFrames, AreThoseWhoseImagesMoveOn) {
+  const std::vector<bool> held = HeldFrames(PosesHeld(20, 40), ImagesTowardsAWall());
+  for (std::size_t i = 0; i < kHeldTestFrames; ++i) {
+    if (i <= 20 || i >= 40) {
+      EXPECT_FALSE(held[i]) << i;
+    }
+    if (i >= 24 && i < 40) {
+      EXPECT_TRUE(held[i]) << i;
+    }
+  }
+}
+
+// A tracker that has not begun gives its first pose: right is the one it begins at.
+TEST(HeldFrames, AtTheStartAreThoseBeforeTheLast) {
+  const std::vector<bool> held = HeldFrames(PosesHeld(0, 30), ImagesTowardsAWall());
+  for (std::size_t i = 0; i < kHeldTestFrames; ++i) {
+    if (i < 25) {
+      EXPECT_TRUE(held[i]) << i;
+    }
+    if (i >= 29) {
+      EXPECT_FALSE(held[i]) << i;
+    }
+  }
+}
+
+// Poses of a tracker that answers every third frame.
+TEST(HeldFrames, AreAllButTheFirstOfPosesReadTooOften) {
+  std::vector<std::optional<Pose3>> poses = PosesHeld(0, 0);
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) poses[i] = poses[i / 3 * 3];
+  const std::vector<bool> held =
+      HeldFrames(poses, [](std::size_t) { return std::shared_ptr<const DepthImage>(); });
+  EXPECT_FALSE(held[30]);
+  EXPECT_TRUE(held[31]);
+  EXPECT_TRUE(held[32]);
+  EXPECT_FALSE(held[33]);
+}
+
+TEST(HeldFrames, AreNotThoseOfACameraThatStands) {
+  const auto none = [](const std::vector<bool>& held) {
+    return std::none_of(held.begin(), held.end(), [](bool is_held) { return is_held; });
+  };
+  EXPECT_TRUE(none(HeldFrames(PosesHeld(0, 30), ImagesTowardsAWall(true))));
+  EXPECT_TRUE(none(HeldFrames(PosesHeld(0, 0), ImagesTowardsAWall())));
+  EXPECT_TRUE(none(HeldFrames(PosesHeld(20, 22), ImagesTowardsAWall())));  // two images near one
+  EXPECT_TRUE(none(HeldFrames(PosesHeld(20, 40), [](std::size_t) { return nullptr; })));
+  // A recording without any motion is named by the check of its poses.
+  EXPECT_TRUE(none(HeldFrames(std::vector<std::optional<Pose3>>(kHeldTestFrames, Pose3{}),
+                              ImagesTowardsAWall())));
+}
+
+}  // namespace
+}  // namespace depthgrid
