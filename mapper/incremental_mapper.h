@@ -80,7 +80,8 @@ class IncrementalMapper {
   // - its pose or a loop is not finite, has a quaternion that is not of unit norm (to 0.001), lies
   //   beyond 10,000 km, or has a sigma that is not positive;
   // - it has an image but the mapper has no camera, or one of another size, or a scan as well; or
-  //   all of some hundreds of sampled depths are beyond 100 m (probably millimetres);
+  //   all of some hundreds of sampled depths are beyond 100 m and not all the same (probably
+  //   millimetres; one number everywhere is taken for no depth);
   // - it has a scan but no stand, and its camera's optical axis is within 10 degrees of vertical,
   //   as when a laser's planar pose is given without CameraOf();
   // - a scan's max_range_m is negative or not finite, or matched_scan or stand is set without a

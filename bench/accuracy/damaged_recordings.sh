@@ -111,6 +111,12 @@ for from in 5 8 12 16 20; do
   awk -v from=$from '$1 < from || $1 > from + 2' $slam >"gap_$from.txt"
   scored "gap_from_${from}_to_$((from + 2))_s" level --poses "gap_$from.txt" --loops $loops
 done
+# One pose for two seconds, at the same places.
+for from in 5 8 12 16 20; do
+  awk -v from=$from '$1 < from || $1 > from + 2 { print; pose = $2 " " $3 " " $4 " " $5 " " $6 " " $7 " " $8; next }
+    { print $1, pose }' $slam >"held_$from.txt"
+  scored "held_from_${from}_to_$((from + 2))_s" level --poses "held_$from.txt" --loops $loops
+done
 copied cut
 awk 'NR % 9 == 0 { print substr($0, 1, 12); next } { print }' level/depth.txt >cut/depth.txt
 head -c -20 $slam | awk 'NR % 13 == 0 { print "?", $0; next } { print }' >cut_slam.txt

@@ -9,12 +9,12 @@ namespace {
 // Stamps of poses at exactly the greatest gap differ from it by rounding, of 1.7e9 s by .24 us.
 constexpr double kRoundingS = 1e-6;
 
-Pose3 Blend(const Pose3& a, const Pose3& b, double share_of_b) {
+}  // namespace
+
+Pose3 Interpolated(const Pose3& a, const Pose3& b, double share_of_b) {
   return {a.rotation.slerp(share_of_b, b.rotation).normalized(),
           a.translation + share_of_b * (b.translation - a.translation)};
 }
-
-}  // namespace
 
 std::optional<std::size_t> NearestStamp(const std::vector<double>& stamps_s, double stamp_s,
                                         double max_difference_s) {
@@ -65,8 +65,9 @@ PoseTrack::Found PoseTrack::Interpolated(double stamp_s) const {
     return {};
   }
   const double share_of_b = (stamp_s - stamps_s_[a]) / gap_s;
-  return {Blend(*live_[a].slam_from_camera, *live_[b].slam_from_camera, share_of_b), live_[a].epoch,
-          share_of_b <= 0.5 ? a : b};
+  return {
+      depthgrid::Interpolated(*live_[a].slam_from_camera, *live_[b].slam_from_camera, share_of_b),
+      live_[a].epoch, share_of_b <= 0.5 ? a : b};
 }
 
 }  // namespace depthgrid

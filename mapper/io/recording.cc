@@ -63,7 +63,7 @@ class RecordingSource final : public FrameSource {
     RequireSeconds(recording_.images.back().stamp_s, recording_.images.back().depth_path);
     FindPoses(slam, options);
     Probe();
-    DropHeldPoses();
+    MendHeldPoses();
     next_ = recording_.part.begin;
     if (recording_.camera.camera.HasDistortion()) undistorter_.emplace(recording_.camera.camera);
     images_.emplace(next_, recording_.part.EndAmong(recording_.images.size()),
@@ -130,25 +130,59 @@ class RecordingSource final : public FrameSource {
     }
   }
 
-  void DropHeldPoses() {
-    const auto begin = static_cast<std::ptrdiff_t>(recording_.part.begin);
+  // Poses that are held are interpolated, or where that says nothing taken for missing.
+  void MendHeldPoses() {
+    const std::size_t begin = recording_.part.begin;
     std::vector<std::optional<Pose3>> poses;
     for (std::size_t i = 0; i < ImagesOfPart(recording_).size(); ++i) {
-      poses.push_back(poses_[recording_.part.begin + i].slam_from_camera);
+      poses.push_back(poses_[begin + i].slam_from_camera);
     }
-    const std::vector<bool> held = HeldFrames(poses, [this](std::size_t i) {
-      return Read(recording_.images[recording_.part.begin + i]).depth;
-    });
-    const auto count = std::count(held.begin(), held.end(), true);
+    const std::vector<bool> held =
+        HeldFrames(poses, [&](std::size_t i) { return Read(recording_.images[begin + i]).depth; });
+    const auto count = static_cast<std::size_t>(std::count(held.begin(), held.end(), true));
     if (count == 0) return;
-    for (std::size_t i = 0; i < held.size(); ++i) {
-      if (held[i]) poses_[recording_.part.begin + i].slam_from_camera.reset();
+    std::size_t lost = 0;
+    for (std::size_t i = 0; i < held.size();) {
+      if (!held[i]) {
+        ++i;
+        continue;
+      }
+      const std::size_t from = i;
+      while (i < held.size() && held[i]) ++i;
+      if (!InterpolateOver(begin + from, begin + i)) lost += i - from;
     }
     recording_.warnings.push_back(fmt::format(
-        "{}: one pose is given again and again while the images move, first in frame {}: {} {} "
-        "taken for lost",
+        "{}: one pose is given again and again while the camera moves, first in frame {}: {} "
+        "interpolated, {} taken for lost",
         recording_.name, begin + (std::find(held.begin(), held.end(), true) - held.begin()),
-        Counted(static_cast<std::size_t>(count), "frame"), count == 1 ? "is" : "are"));
+        Counted(count - lost, "frame"), lost));
+  }
+  // Interpolates the poses of frames from `from` to before `end`, or else removes them: false.
+  bool InterpolateOver(std::size_t from, std::size_t end) {
+    // Over longer stretches the way is not known, and nobody goes that fast.
+    constexpr double kMostS = 3.0, kMostMps = 2.0, kMostRadps = 2.0;
+    const auto stamp_s = [&](std::size_t i) { return recording_.images[i].stamp_s; };
+    const bool is_between = from > 0 && end < poses_.size() && poses_[end].slam_from_camera &&
+                            poses_[from - 1].slam_from_camera &&
+                            poses_[from - 1].epoch == poses_[end].epoch;
+    const double gap_s = is_between ? stamp_s(end) - stamp_s(from - 1) : 0.0;
+    bool mends = gap_s > 0.0 && gap_s <= kMostS;
+    if (mends) {
+      const Pose3 step =
+          Inverse(*poses_[from - 1].slam_from_camera) * *poses_[end].slam_from_camera;
+      mends = step.translation.norm() <= kMostMps * gap_s &&
+              LogRotation(step.rotation).norm() <= kMostRadps * gap_s;
+    }
+    for (std::size_t i = from; i < end; ++i) {
+      std::optional<Pose3>& pose = poses_[i].slam_from_camera;
+      if (!mends) {
+        pose.reset();
+        continue;
+      }
+      const double share = (stamp_s(i) - stamp_s(from - 1)) / gap_s;
+      pose = Interpolated(*poses_[from - 1].slam_from_camera, *poses_[end].slam_from_camera, share);
+    }
+    return mends;
   }
 
   InputError NoImageHasPose(const SlamOutput& slam, const RecordingOptions& options) const {

@@ -50,7 +50,7 @@ void TrajectoryOptions::Visit(OptionsVisitor& v) {
   v.Number("turn_rate_dps", turn_rate_dps, {0.1, 360.0}, "upper bound of the turn rate, deg/s");
   v.Number("shake_deg", shake_deg, {0.0, 10.0}, "rms shake about each camera axis, degrees");
   v.Number("shake_m", shake_m, {0.0, 0.2}, "rms shake along each camera axis, metres");
-  v.Number("height_m", height_m, {0.0, 10.0}, "planar: height of the camera");
+  v.Number("height_m", height_m, {-100.0, 100.0}, "planar: z of the camera in world");
   v.Number("pitch_deg", pitch_deg, {-80.0, 80.0}, "planar: pitch of the camera, up is positive");
   v.Number("clearance_m", clearance_m, {0.0, 5.0}, "least distance from geometry");
   v.Flag("closed", closed, "the path returns to its first waypoint");
