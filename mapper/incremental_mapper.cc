@@ -161,7 +161,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
   const bool provisional = scans.matched && frame.slam_from_camera;
   EpochStart start;
   if (provisional) {
-    start = SameEpoch() ? EpochStart{CarriedOn()} : BegunAt(nullptr);
+    start = SameEpoch() ? EpochStart{CarriedOn(), 0.0, 0.0} : BegunAt(nullptr);
     const double variance = gap_variance + start.gap_share * start.gap_share;
     frames.push_back(mapped.WithScans(AsMapped(start.map_from_base, variance), scans));
   }
@@ -357,14 +357,14 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   report.inserted = added.kept();
   report.well_seen = !added.kept();
   if (!reference) return;
+  // Groups do not reach across a gap: loops may open it, nothing else may give way in its place.
+  if (!added.slam_motion) reference->BeginPart(PartPlace::kKnown);
   if (added.kept()) {
     // SLAM's jitter in this frame is no correction of the state.
     const Pose2 corrected =
         prediction.map_from_base *
         Pose2::FromVector(filter.step().state_gain.topRows<3>() * fused.innovation);
     if (added.slam_motion) reference->Corrected(prediction.map_from_base, corrected);
-    // Groups do not reach across a gap: loops may open it, nothing else may give way in its place.
-    if (!added.slam_motion) reference->BeginPart(PartPlace::kKnown);
     reference->Insert(scans.kept(), fused.map_from_base, fused.covariance);
   } else {
     reference->InsertTied(scans.matched, fused.map_from_base, added.tied_to);
@@ -386,9 +386,11 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base, doubl
           Between(BaseOf(*before.slam_from_camera), BaseOf(*record.slam_from_camera));
     } else {
       // From one frame to the next the last motion goes on; else the longer, the less is known.
-      frame.gap_share =
-          variance < 1.0 ? std::sqrt(variance) : ShareOfGap(record.stamp_s - before.stamp_s);
+      const bool went_on = variance > 0.0 && variance < 1.0;
+      frame.gap_share = went_on ? std::sqrt(variance) : ShareOfGap(record.stamp_s - before.stamp_s);
     }
+  } else if (doubted) {
+    frame.gap_share = kGuessedShare;
   }
   return frame;
 }

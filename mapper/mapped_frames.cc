@@ -79,8 +79,10 @@ std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,
                                     const std::vector<Pose2>& map_from_base) {
   std::vector<MappedFrame> kept;
   std::optional<Pose2> skipped = Pose2{};  // SLAM's motion since the last kept frame
+  double gap_share = 0.0;                  // the widest gap in it
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const std::optional<Pose2>& step = frames[i].slam_motion;
+    if (!step) gap_share = std::max(gap_share, frames[i].gap_share);
     if (!frames[i].kept()) {
       skipped = skipped && step ? std::optional(*skipped * *step) : std::nullopt;
       continue;
@@ -90,7 +92,9 @@ std::vector<MappedFrame> KeptFrames(const std::vector<MappedFrame>& frames,
     if (i > 0 && !frames[i - 1].kept()) {
       frame.slam_motion = skipped && step ? std::optional(*skipped * *step) : std::nullopt;
     }
+    if (!frame.slam_motion) frame.gap_share = gap_share;
     skipped = Pose2{};
+    gap_share = 0.0;
     kept.push_back(std::move(frame));
   }
   return kept;

@@ -11,10 +11,10 @@
 
 namespace depthgrid {
 
-// A frame that was inserted, in order of time.
-// MappedFrame::gap_share where the place was guessed, and after a loss of 3 s.
+// MappedFrame::gap_share where the place was guessed, and after a gap of 3 s or more.
 constexpr double kGuessedShare = 10.0;
 
+// A frame that was inserted, in order of time.
 struct MappedFrame {
   int frame = 0;  // Frame::index; negative: of a prior map
   double stamp_s = 0.0;
@@ -30,7 +30,7 @@ struct MappedFrame {
   std::optional<Pose2> slam_motion;
   // Where it is empty: how well the motion from the previous mapped frame was known without SLAM,
   // as a multiple of kEpochSigma, at most kGuessedShare.
-  double gap_share = kGuessedShare;
+  double gap_share = 1.0;
   // SLAM's pose did not move since the previous frame (Standing).
   bool stands = false;
   MatchResult match;  // its information in axes of the matched pose

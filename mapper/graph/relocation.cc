@@ -78,9 +78,7 @@ void Relocation::Lost(double duration_s, const std::optional<Pose2>& step) {
 }
 
 void Relocation::Paused(double duration_s, const Pose2& step) {
-  if (duration_s >= options_.min_lost_epoch_s && IsElsewhere(duration_s, step)) {
-    Lost(duration_s, step);
-  }
+  if (IsElsewhere(duration_s, step)) Lost(duration_s, step);
 }
 
 // SLAM that relocalises in its own map makes no such step.

@@ -10,7 +10,7 @@
 namespace depthgrid {
 namespace {
 
-// A camera that records 15 images a second as 30 is told from a standing one at .3 m/s.
+// A camera that records 15 images a second as 30 is told from a standing one from .35 m/s on.
 constexpr double kStandsM = 0.01;
 constexpr double kStandsRad = RadFromDeg(0.4);
 constexpr double kDriftPerS = 5.0;  // times those

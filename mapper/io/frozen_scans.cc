@@ -3,11 +3,18 @@
 #include <cmath>
 #include <utility>
 
+#include "mapper/core/angle.h"
 #include "mapper/core/median.h"
-#include "mapper/io/frozen_motion.h"
 
 namespace depthgrid {
 namespace {
+
+// 2 degrees or 5 cm plus as much per second, more than SLAM and odometry drift while the sensor
+// stands. Chosen, not measured.
+bool IsFrozenTurn(double turn_rad, double seconds) {
+  return std::abs(turn_rad) > RadFromDeg(2.0) * (1.0 + seconds);
+}
+double FrozenWayM(double seconds) { return 0.05 * (1.0 + seconds); }
 
 // With fewer hits, or fewer pieces of wall that must have moved, nothing can be decided.
 constexpr int kFewHits = 20;

@@ -42,15 +42,16 @@ class Run {
 
   // The number of frames, from the right one on, that are not held.
   std::size_t CountRight() const {
-    const std::size_t size = end_ - begin_;
-    const auto next = image_(At(1));
-    if (!right_ || !next) return size;
+    const std::size_t last = end_ - begin_ - 1;
+    std::shared_ptr<const DepthImage> next;
+    for (std::size_t k = 1; k <= last && !next; ++k) next = image_(At(k));
+    if (!right_ || !next) return last + 1;
     const double moved_m = internal::kMovedM + internal::kTimesNoise * DifferenceM(*right_, *next);
     for (std::size_t probe = 1; probe <= kProbes; ++probe) {
-      const std::size_t last = probe * (size - 1) / kProbes;
-      if (SinceRightM(last) > moved_m) return FirstBeyond(internal::kBegunShare * moved_m, last);
+      const std::size_t k = probe * last / kProbes;
+      if (k > 1 && SinceRightM(k) > moved_m) return FirstBeyond(internal::kBegunShare * moved_m, k);
     }
-    return size;
+    return last + 1;
   }
   std::size_t At(std::size_t k) const { return from_last_ ? end_ - 1 - k : begin_ + k; }
 
@@ -109,32 +110,36 @@ std::vector<PoseRun> MovingOf(const std::vector<PoseRun>& runs,
   return moving;
 }
 
-// Whether nearly every pose of the moving camera is given more than once: read more often than it
-// is made. No robot moves in jerks throughout.
-bool AreRepeated(const std::vector<PoseRun>& moving) {
+// The longest run of a pose that is only read more often than it is made, as nearly every pose of
+// the moving camera then is: no robot moves in jerks throughout. 1 where that is not so.
+std::size_t LongestRepeated(const std::vector<PoseRun>& moving) {
   constexpr std::size_t kLeastRuns = 20;
   constexpr double kMostShare = 0.8;
-  const auto repeated = std::count_if(moving.begin(), moving.end(),
-                                      [](const PoseRun& run) { return run.size() > 1; });
-  return moving.size() >= kLeastRuns &&
-         static_cast<double>(repeated) >= kMostShare * static_cast<double>(moving.size());
+  if (moving.size() < kLeastRuns) return 1;
+  std::vector<double> sizes;
+  for (const PoseRun& run : moving) sizes.push_back(static_cast<double>(run.size()));
+  const auto repeated =
+      std::count_if(sizes.begin(), sizes.end(), [](double size) { return size > 1.0; });
+  const double least = kMostShare * static_cast<double>(moving.size());
+  if (static_cast<double>(repeated) < least) return 1;
+  return 2 * static_cast<std::size_t>(UpperMedian(std::move(sizes)));
 }
 
 }  // namespace
 
 std::vector<bool> HeldFrames(const std::vector<std::optional<Pose3>>& slam_from_camera,
-                             const ImageOfFrame& image) {
+                             std::size_t first, const ImageOfFrame& image) {
   std::vector<bool> held(slam_from_camera.size(), false);
   const std::vector<PoseRun> runs = RunsOf(slam_from_camera);
   const std::vector<PoseRun> moving = MovingOf(runs, slam_from_camera);
-  if (AreRepeated(moving)) {
-    for (const PoseRun& run : moving) {
-      for (std::size_t i = run.begin + 1; i < run.end; ++i) held[i] = true;
-    }
+  const std::size_t repeated = LongestRepeated(moving);
+  for (const PoseRun& run : moving) {
+    if (run.size() > repeated) continue;
+    for (std::size_t i = run.begin + 1; i < run.end; ++i) held[i] = true;
   }
   if (runs.size() < 2) return held;
   for (const PoseRun& all : runs) {
-    if (all.size() < kLeastFrames) continue;
+    if (all.size() < kLeastFrames || all.end <= first || held[all.begin + 1]) continue;
     const Run run(all.begin, all.end, &all == &runs.front(), image);
     for (std::size_t k = run.CountRight(); k < all.size(); ++k) held[run.At(k)] = true;
   }

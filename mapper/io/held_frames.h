@@ -16,12 +16,14 @@ namespace depthgrid {
 // Frame i's image; null if it cannot be read.
 using ImageOfFrame = std::function<std::shared_ptr<const DepthImage>(std::size_t)>;
 
-// For each frame, whether its pose equals its neighbours' bit for bit while half of the depths
-// changed since the first of them, or until the last of them where no pose differed before.
-// Somebody who fills the view of a standing camera has the same effect. Also held are all but the
-// first frames of each pose where nearly every pose of the moving camera is given more than once,
-// whatever the images show. Nothing is held where all poses are equal. Of the images only those of frames with equal poses are asked for, and few.
+// For each frame, whether its pose equals its neighbours' bit for bit though it should not. Either
+// four frames or more have one pose while half of the depths changed by 5 cm and twice what noise
+// changes since the first of them, or until the last of them where no pose differed before: those
+// from half that change on. Somebody who fills the view of a standing camera has the same effect.
+// Or nearly every pose of the moving camera is given more than once: all but the first frame of
+// each. Nothing is held where all poses are equal. Images are asked for, several times and none
+// before frame `first` but those of its pose, only of frames with equal poses.
 std::vector<bool> HeldFrames(const std::vector<std::optional<Pose3>>& slam_from_camera,
-                             const ImageOfFrame& image);
+                             std::size_t first, const ImageOfFrame& image);
 
 }  // namespace depthgrid

@@ -12,6 +12,7 @@ constexpr double kRoundingS = 1e-6;
 }  // namespace
 
 Pose3 Interpolated(const Pose3& a, const Pose3& b, double share_of_b) {
+  if (a == b) return a;  // without rounding: HeldFrames() compares bits
   return {a.rotation.slerp(share_of_b, b.rotation).normalized(),
           a.translation + share_of_b * (b.translation - a.translation)};
 }

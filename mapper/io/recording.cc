@@ -130,39 +130,39 @@ class RecordingSource final : public FrameSource {
     }
   }
 
-  // Poses that are held are interpolated, or where that says nothing taken for missing.
+  // Poses that are held are interpolated, or where that says nothing taken for missing. The frames
+  // before the part say where it begins.
   void MendHeldPoses() {
-    const std::size_t begin = recording_.part.begin;
+    const std::size_t first = recording_.part.begin;
     std::vector<std::optional<Pose3>> poses;
-    for (std::size_t i = 0; i < ImagesOfPart(recording_).size(); ++i) {
-      poses.push_back(poses_[begin + i].slam_from_camera);
-    }
+    for (std::size_t i = 0; i < EndOfPart(); ++i) poses.push_back(poses_[i].slam_from_camera);
     const std::vector<bool> held =
-        HeldFrames(poses, [&](std::size_t i) { return Read(recording_.images[begin + i]).depth; });
-    const auto count = static_cast<std::size_t>(std::count(held.begin(), held.end(), true));
-    if (count == 0) return;
-    std::size_t lost = 0;
-    for (std::size_t i = 0; i < held.size();) {
-      if (!held[i]) {
-        ++i;
-        continue;
-      }
-      const std::size_t from = i;
-      while (i < held.size() && held[i]) ++i;
-      if (!InterpolateOver(begin + from, begin + i)) lost += i - from;
+        HeldFrames(poses, first, [&](std::size_t i) { return Read(recording_.images[i]).depth; });
+    std::size_t count = 0, lost = 0;
+    std::optional<std::size_t> first_held;
+    for (std::size_t end = 0; end < held.size(); ++end) {
+      if (!held[end]) continue;
+      const std::size_t from = end;
+      while (end < held.size() && held[end]) ++end;
+      const bool mends = InterpolateOver(from, end);
+      if (end <= first) continue;
+      const std::size_t in_part = end - std::max(from, first);
+      if (!first_held) first_held = std::max(from, first);
+      count += in_part;
+      lost += mends ? 0 : in_part;
     }
-    recording_.warnings.push_back(fmt::format(
-        "{}: one pose is given again and again while the camera moves, first in frame {}: {} "
-        "interpolated, {} taken for lost",
-        recording_.name, begin + (std::find(held.begin(), held.end(), true) - held.begin()),
-        Counted(count - lost, "frame"), lost));
+    if (!first_held) return;
+    recording_.warnings.push_back(
+        fmt::format("{}: one pose is given again and again while the camera moves, first in frame "
+                    "{}: {} interpolated, {} taken for lost",
+                    recording_.name, *first_held, Counted(count - lost, "frame"), lost));
   }
   // Interpolates the poses of frames from `from` to before `end`, or else removes them: false.
   bool InterpolateOver(std::size_t from, std::size_t end) {
     // Over longer stretches the way is not known, and nobody goes that fast.
     constexpr double kMostS = 3.0, kMostMps = 2.0, kMostRadps = 2.0;
     const auto stamp_s = [&](std::size_t i) { return recording_.images[i].stamp_s; };
-    const bool is_between = from > 0 && end < poses_.size() && poses_[end].slam_from_camera &&
+    const bool is_between = from > 0 && end < EndOfPart() && poses_[end].slam_from_camera &&
                             poses_[from - 1].slam_from_camera &&
                             poses_[from - 1].epoch == poses_[end].epoch;
     const double gap_s = is_between ? stamp_s(end) - stamp_s(from - 1) : 0.0;
@@ -184,6 +184,8 @@ class RecordingSource final : public FrameSource {
     }
     return mends;
   }
+
+  std::size_t EndOfPart() const { return recording_.part.EndAmong(recording_.images.size()); }
 
   InputError NoImageHasPose(const SlamOutput& slam, const RecordingOptions& options) const {
     const bool any = std::any_of(slam.live.begin(), slam.live.end(), [](const SlamPose& pose) {

@@ -34,9 +34,9 @@ struct SliceBand {
   float lean_sigmas = 0.0F;
 
   // The core, the inner half of its heights.
-  float CoreLowM() const { return 0.5F * (low_m + high_m) - 0.25F * (high_m - low_m); }
-  float CoreHighM() const { return 0.5F * (low_m + high_m) + 0.25F * (high_m - low_m); }
   float MiddleM() const { return 0.5F * (low_m + high_m); }
+  float CoreLowM() const { return MiddleM() - 0.25F * (high_m - low_m); }
+  float CoreHighM() const { return MiddleM() + 0.25F * (high_m - low_m); }
 };
 
 // Image rows; empty if first > last.
@@ -107,9 +107,8 @@ float FindNearest(std::span<const float> samples, const ReturnLimits& limits,
 // upper edge of a desk) lies within the noise window far away and not nearby: the mean of both
 // would move towards the camera as it comes near. So samples above and below the core, the inner
 // half of the slice's heights, count only if both their means are within `agree_sigmas` of the
-// core's; else the range is the core's mean. Both or none, so that a leaning surface is met at the
-// camera's height. `samples`: the line's in the slice, one per row from `first_row` on; `range_m`:
-// from FindNearest().
+// core's; else the range is the core's mean. `samples`: the line's in the slice, one per row from
+// `first_row` on; `range_m`: from FindNearest().
 float SteadyRange(std::span<const float> samples, int first_row, const BearingLine& line,
                   const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
                   float range_m);
@@ -118,8 +117,8 @@ float SteadyRange(std::span<const float> samples, int first_row, const BearingLi
 // far away, so the height that is met would change with the distance. The surface that lies at the
 // slice's middle height is followed up and down from there, and where a line through its ranges
 // over their heights leans by more than `lean_sigmas` of its slope's sigma, the range is the line's
-// at the middle height. Not so where the core leans by less (a step) or what was found stands before
-// that surface. `range_m`: from SteadyRange(); returned where nothing leans.
+// at the middle height. Not so where the core leans by less (a step) or what was found stands
+// before that surface. `range_m`: from SteadyRange(); returned where nothing leans.
 float LeaningRange(std::span<const float> samples, int first_row, const BearingLine& line,
                    const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
                    float range_m);
