@@ -107,6 +107,7 @@ int FrameHistory::StepsToNewest() const {
 }
 
 bool FrameHistory::HadPause() const {
+  // Chosen: a camera that drops a few images has not paused.
   constexpr double kPauseS = 0.5;
   constexpr int kPauseSteps = 5;
   if (records_.size() < 2 || !newest().slam_from_camera || WasLost()) return false;

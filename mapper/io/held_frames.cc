@@ -97,7 +97,7 @@ std::vector<PoseRun> RunsOf(const std::vector<std::optional<Pose3>>& slam_from_c
 // The runs after which the camera moved on at once.
 std::vector<PoseRun> MovingOf(const std::vector<PoseRun>& runs,
                               const std::vector<std::optional<Pose3>>& slam_from_camera) {
-  constexpr double kMovesM = 0.005, kMovesRad = 0.005;
+  constexpr double kMovesM = 0.005, kMovesRad = 0.005;  // chosen: above what a tracker jitters by
   std::vector<PoseRun> moving;
   for (std::size_t r = 0; r + 1 < runs.size(); ++r) {
     if (runs[r].end != runs[r + 1].begin) continue;
@@ -113,6 +113,7 @@ std::vector<PoseRun> MovingOf(const std::vector<PoseRun>& runs,
 // The longest run of a pose that is only read more often than it is made, as nearly every pose of
 // the moving camera then is: no robot moves in jerks throughout. 1 where that is not so.
 std::size_t LongestRepeated(const std::vector<PoseRun>& moving) {
+  // Chosen, not measured.
   constexpr std::size_t kLeastRuns = 20;
   constexpr double kMostShare = 0.8;
   if (moving.size() < kLeastRuns) return 1;

@@ -11,7 +11,7 @@ constexpr double kRoundingS = 1e-6;
 
 }  // namespace
 
-Pose3 Interpolated(const Pose3& a, const Pose3& b, double share_of_b) {
+Pose3 Blend(const Pose3& a, const Pose3& b, double share_of_b) {
   if (a == b) return a;  // without rounding: HeldFrames() compares bits
   return {a.rotation.slerp(share_of_b, b.rotation).normalized(),
           a.translation + share_of_b * (b.translation - a.translation)};
@@ -66,9 +66,8 @@ PoseTrack::Found PoseTrack::Interpolated(double stamp_s) const {
     return {};
   }
   const double share_of_b = (stamp_s - stamps_s_[a]) / gap_s;
-  return {
-      depthgrid::Interpolated(*live_[a].slam_from_camera, *live_[b].slam_from_camera, share_of_b),
-      live_[a].epoch, share_of_b <= 0.5 ? a : b};
+  return {Blend(*live_[a].slam_from_camera, *live_[b].slam_from_camera, share_of_b), live_[a].epoch,
+          share_of_b <= 0.5 ? a : b};
 }
 
 }  // namespace depthgrid

@@ -17,8 +17,8 @@ std::optional<std::size_t> NearestStamp(const std::vector<double>& stamps_s, dou
 // A trajectory as SLAM output: one epoch, no loops.
 SlamOutput SlamOutputOf(const Trajectory& trajectory);
 
-// Linear in the position, along the shortest turn.
-Pose3 Interpolated(const Pose3& a, const Pose3& b, double share_of_b);
+// The pose at this share of the way from a to b: linear in the position, along the shortest turn.
+Pose3 Blend(const Pose3& a, const Pose3& b, double share_of_b);
 
 class PoseTrack {
  public:

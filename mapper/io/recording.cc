@@ -159,7 +159,7 @@ class RecordingSource final : public FrameSource {
   }
   // Interpolates the poses of frames from `from` to before `end`, or else removes them: false.
   bool InterpolateOver(std::size_t from, std::size_t end) {
-    // Over longer stretches the way is not known, and nobody goes that fast.
+    // Over longer stretches the way is not known, and nobody goes that fast. Chosen, not measured.
     constexpr double kMostS = 3.0, kMostMps = 2.0, kMostRadps = 2.0;
     const auto stamp_s = [&](std::size_t i) { return recording_.images[i].stamp_s; };
     const bool is_between = from > 0 && end < EndOfPart() && poses_[end].slam_from_camera &&
@@ -180,7 +180,7 @@ class RecordingSource final : public FrameSource {
         continue;
       }
       const double share = (stamp_s(i) - stamp_s(from - 1)) / gap_s;
-      pose = Interpolated(*poses_[from - 1].slam_from_camera, *poses_[end].slam_from_camera, share);
+      pose = Blend(*poses_[from - 1].slam_from_camera, *poses_[end].slam_from_camera, share);
     }
     return mends;
   }

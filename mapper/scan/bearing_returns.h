@@ -33,8 +33,8 @@ struct SliceBand {
   // Limit of LeaningRange(); 0: none leans.
   float lean_sigmas = 0.0F;
 
-  // The core, the inner half of its heights.
   float MiddleM() const { return 0.5F * (low_m + high_m); }
+  // The core, the inner half of its heights.
   float CoreLowM() const { return MiddleM() - 0.25F * (high_m - low_m); }
   float CoreHighM() const { return MiddleM() + 0.25F * (high_m - low_m); }
 };
@@ -123,7 +123,8 @@ float LeaningRange(std::span<const float> samples, int first_row, const BearingL
                    const SliceBand& slice, const ReturnLimits& limits, const NoiseWindow& window,
                    float range_m);
 
-// The limits by which LeaningRange() follows a surface.
+// The limits by which LeaningRange() follows a surface: chosen; what others do, as far as tried, is
+// in docs/tried.md, "The slice that is matched".
 struct LeaningLimits {
   // The next sample may be off by this many sigmas, and by 1.2 (50 degrees) times its way up.
   static constexpr float kNextSigmas = 3.5F;

@@ -45,7 +45,7 @@ struct ScanOptions {
   // half (SteadyRange); 0: never. With pure noise 2.5 rejects one bearing in forty.
   double slice_agree_sigmas = 2.5;
   // Sigmas by which a surface in the slice must lean to be met at the slice's middle
-  // (LeaningRange); 0: never. docs/tried.md, "Surfaces that lean".
+  // (LeaningRange); 0: never. docs/tried.md, "The slice that is matched".
   double slice_lean_sigmas = 6.0;
   // Whether the slice omits surface ends cut by the camera's reach (cut_ends.h).
   bool drop_cut_ends = true;
