@@ -113,6 +113,10 @@ std::vector<GroupMotion> MotionsOf(const SurfelGroups& of, const std::vector<Map
       motion.frames += StepsTo(frames[i], frames[i - 1], usual_s, usual);
       if (motion.known) motion.before_from_group = motion.before_from_group * *step;
     }
+    // SLAM that jitters in place is not known to stand, however little its error grows meanwhile.
+    if (motion.known) {
+      motion.frames = MovingStepsIn(motion.frames, motion.before_from_group, usual);
+    }
     motion.frames = std::max(motion.frames, 1);
     motion.gap_share = std::sqrt(gap_variance);
     if (!frames[first - 1].kept()) motion.tie = TieBefore(of, frames, g);

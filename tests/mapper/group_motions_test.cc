@@ -236,6 +236,25 @@ TEST(GroupMotions, OnlyFramesThatFollowEachOtherHaveAPauseBetweenThem) {
   }
 }
 
+// SLAM that jitters about one place for a minute has gone no farther than it seems.
+TEST(GroupMotions, AMotionOfManyFramesCountsAsThoseItTakesToGoThatFar) {
+  for (const double jitter_m : {0.004, 0.0}) {
+    SCOPED_TRACE(jitter_m);
+    Walks walks(4);
+    for (int i = 0; i < 1800; ++i) walks.AddAfter({i % 2 == 0 ? jitter_m : -jitter_m, 0.0, 0.0});
+    if (jitter_m == 0.0) {
+      for (auto frame = walks.frames.end() - 1800; frame != walks.frames.end(); ++frame) {
+        frame->stands = true;
+      }
+    }
+    walks.AddAfter({0.1, 0.0, 0.0});
+    const std::vector<GroupMotion> motions = MotionsOf(walks.groups, walks.frames);
+    ASSERT_TRUE(motions.back().known);
+    EXPECT_GE(motions.back().frames, 1);
+    EXPECT_LE(motions.back().frames, 30);
+  }
+}
+
 // The frames of a motion are those after a group's first one up to the next group's. Of the last
 // group's others SLAM errs as it did before.
 TEST(GroupMotions, AFrameHasTheGrowthOfTheMotionThatContainsIt) {
