@@ -35,6 +35,7 @@ except ImportError as error:  # --help does without
 # A gap in the poses that no straight line is drawn across.
 MOST_GAP_S = 0.5
 DEPTH_SCALE = 5000  # units a metre of what comes in metres
+FARTHEST_UNITS = 65534  # 65535 is no depth, as for depthgrid (mapper/io/png.cc)
 
 
 class BadInput(Exception):
@@ -96,6 +97,14 @@ def between(a, b, share):
     else:
         q = math.sin((1 - share) * angle) * qa + math.sin(share * angle) * qb
     return matrix(a[:3, 3] + share * (b[:3, 3] - a[:3, 3]), q / np.linalg.norm(q))
+
+
+def messages(bag, path, topics):
+    """Those of the topics, each as topic, message and time."""
+    try:
+        yield from bag.read_messages(topics=topics)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
 
 
 class Track:
@@ -177,7 +186,7 @@ class Poses:
         self.frames, self.odometry, self.odometry_child = Frames(), None, ""
         self.mount, self.base = None, arguments.base_frame
         topics = ["/tf", "/tf_static"] + ([arguments.odom] if arguments.odom else [])
-        for topic, message, _ in bag.read_messages(topics=topics):
+        for topic, message, _ in messages(bag, arguments.bag, topics):
             if topic in ("/tf", "/tf_static"):
                 self.frames.add(message, topic == "/tf_static")
                 continue
@@ -239,7 +248,7 @@ def write_log(bag, arguments, path):
     poses = Poses(bag, arguments, arguments.scan)
     first_s, written, without_pose = None, 0, 0
     with open(path, "x", encoding="ascii") as log:
-        for _, message, _ in bag.read_messages(topics=[arguments.scan]):
+        for _, message, _ in messages(bag, arguments.bag, [arguments.scan]):
             stamp_s = seconds(message.header.stamp)
             first_s = stamp_s if first_s is None else first_s
             pose = poses.at(message.header.frame_id, stamp_s)
@@ -283,8 +292,9 @@ def depth_png(topic, message):
     rows = np.frombuffer(message.data, np.uint8).reshape(message.height, message.step)
     image = rows[:, :message.width * kind.itemsize].copy().view(kind)
     if message.encoding == "32FC1":
-        units = np.nan_to_num(image.astype(float), nan=0.0, posinf=0.0, neginf=0.0) * scale
-        image = np.where((units < 0) | (units > 65534), 0, np.rint(units))
+        # What is too far remains so: free space up to the farthest that the image can say.
+        units = np.nan_to_num(image.astype(float), nan=0.0, posinf=FARTHEST_UNITS, neginf=0.0) * scale
+        image = np.rint(np.clip(units, 0, FARTHEST_UNITS))
     return png16(image), scale
 
 
@@ -305,14 +315,14 @@ def camera_yaml(info, scale, topic):
 def write_folder(bag, arguments, path):
     poses = Poses(bag, arguments, arguments.depth)
     info_topic = arguments.info or os.path.dirname(arguments.depth) + "/camera_info"
-    info = next((m for _, m, _ in bag.read_messages(topics=[info_topic])), None)
+    info = next((m for _, m, _ in messages(bag, arguments.bag, [info_topic])), None)
     if info is None:
         raise BadInput(f"{arguments.bag}: holds no message of {info_topic}: name the camera's with --info")
     os.makedirs(path + "/depth")
     written, without_pose, scale, stamps = 0, 0, None, set()
     with open(path + "/depth.txt", "x", encoding="ascii") as list_of_images, \
          open(path + "/odometry.txt", "x", encoding="ascii") as rows:
-        for _, message, _ in bag.read_messages(topics=[arguments.depth]):
+        for _, message, _ in messages(bag, arguments.bag, [arguments.depth]):
             png, scale = depth_png(arguments.depth, message)
             stamp = decimal(message.header.stamp)
             if stamp in stamps:
@@ -388,7 +398,11 @@ def convert(bag, arguments):
 def opened(path):
     """The bag at a path, of either ROS."""
     if ros2_bag.is_one(path):
-        with ros2_bag.Bag(path) as bag:
+        try:
+            bag = ros2_bag.Bag(path)
+        except OSError as error:
+            raise BadInput(f"{error.filename or path}: cannot be read: {error.strerror}") from error
+        with bag:
             for name in bag.unfinished():
                 print(f"from_bag.py: {name}: was not closed, what its end held may be missing", file=sys.stderr)
             yield bag
@@ -399,7 +413,13 @@ def opened(path):
         raise BadInput(f"{path}: of a ROS 1 bag: {error}: apt-get install python3-rosbag python3-sensor-msgs "
                        "python3-nav-msgs python3-tf2-msgs, for /usr/bin/python3") from error
     try:
-        with rosbag.Bag(path) as bag:
+        bag = rosbag.Bag(path)
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
+    except rosbag.ROSBagException as error:
+        raise BadInput(f"{path}: {error}") from error
+    try:
+        with bag:
             yield bag
     except rosbag.ROSBagException as error:
         raise BadInput(f"{path}: {error}") from error
@@ -434,7 +454,8 @@ def main():
     except (BadInput, ros2_bag.BagError) as error:
         print(f"from_bag.py: {error}", file=sys.stderr)
     except OSError as error:
-        print(f"from_bag.py: {arguments.bag}: {error}", file=sys.stderr)
+        # One of reading is a BadInput by now.
+        print(f"from_bag.py: {arguments.output}: cannot be written: {error.strerror}", file=sys.stderr)
     return 2
 
 

@@ -8,10 +8,13 @@ import filecmp
 import io
 import math
 import os
+import resource
 import runpy
 import shutil
+import struct
 import subprocess
 import sys
+import zlib
 
 sys.dont_write_bytecode = True
 try:
@@ -209,6 +212,38 @@ def require_refusal(text, *arguments):
     require("refused" not in os.listdir(FOLDER), f"{arguments} leave nothing")
 
 
+def require_far_depth_stays_far():
+    """Of depth in metres: what is farther than the image can say, and no return, is no gap in it."""
+    row = np.array([1.0, 13.2, np.inf, np.nan, -np.inf, -1.0, 13.1069, 0.0], "<f4")
+    with rosbag.Bag(f"{FOLDER}/metres.bag", "w") as bag:
+        info = CameraInfo(width=8, height=1, distortion_model="plumb_bob", D=[0.0] * 5, K=[8, 0, 3.5, 0, 8, 0, 0, 0, 1])
+        for tick in range(3):
+            bag.write("/odom", odometry(tick * STEP_S), stamp(tick * STEP_S))
+            bag.write("/tf_static", TFMessage([transform("base_link", "eye", 0, (0.2, 0.0, 0.0))]), stamp(0))
+            image = Image(height=1, width=8, encoding="32FC1", step=32, data=row.tobytes())
+            image.header.stamp, image.header.frame_id = stamp(tick * STEP_S), "eye"
+            bag.write("/eye/camera_info", info, stamp(tick * STEP_S))
+            bag.write("/eye/image", image, stamp(tick * STEP_S))
+    from_bag_here("metres.bag", "--depth", "/eye/image", "--odom", "/odom", "-o", "metres")
+    name = sorted(os.listdir(f"{FOLDER}/metres/depth"))[0]
+    with open(f"{FOLDER}/metres/depth/{name}", "rb") as file:
+        png = file.read()
+    size, = struct.unpack_from(">I", png, 33)  # behind the signature and IHDR
+    units = np.frombuffer(zlib.decompress(png[41:41 + size])[1:], ">u2").tolist()
+    require(units == [5000, 65534, 65534, 0, 0, 0, 65534, 0], f"units of metres: {units}")
+
+
+def require_full_disk_is_told():
+    """A file that may not grow stands for one on a full disk: told of the output, which is not there."""
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20000, limits[1]))
+    try:
+        require_refusal("refused: cannot be written: File too large",
+                        "plain.bag", "--scan", "/scan", "--odom", "/odom", "-o", "refused")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
 def require_same_of_ros2():
     """Of the same messages as ROS 2 keeps them, the same log and folder."""
     laser, camera = (ros2_writer.messages_of(f"{FOLDER}/{name}.bag", order) for name, order in
@@ -273,7 +308,8 @@ def main():
     with open(f"{FOLDER}/no.bag", "w", encoding="ascii") as file:
         file.write("no bag\n")
     require_refusal("no.bag: ", "no.bag", "--scan", "/scan", "-o", "refused")
-    require_refusal("missing.bag: ", "missing.bag")
+    require_refusal("missing.bag: cannot be read: No such file", "missing.bag")
+    require_refusal("missing.mcap: cannot be read: No such file", "missing.mcap")
     require_refusal("no topic /scann; of that kind are: /scan", "plain.bag", "--scan", "/scann", "-o", "refused")
     require_refusal("/odom is nav_msgs/Odometry, must be", "plain.bag", "--scan", "/odom", "-o", "refused")
     require_refusal("must be given", "plain.bag", "--scan", "/scan")
@@ -281,6 +317,10 @@ def main():
     require_refusal("joins no frame 'base_link' to 'odom'", "plain.bag", "--scan", "/scan", "-o", "refused")
     require_refusal("where 'laser' is on 'robot'", "plain.bag", "--scan", "/scan", "--odom", "/odom",
                     "--base-frame", "robot", "-o", "refused")
+    require_refusal("no/such/refused: cannot be written: No such file", "plain.bag", "--scan", "/scan",
+                    "--odom", "/odom", "-o", "no/such/refused")
+    require_full_disk_is_told()
+    require_far_depth_stays_far()
     require_same_of_ros2()
     os.chdir("/")
     shutil.rmtree(FOLDER)
