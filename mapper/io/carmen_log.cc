@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <map>
 #include <utility>
@@ -16,9 +15,9 @@
 #include "mapper/core/slam_step.h"
 #include "mapper/io/carmen_check.h"
 #include "mapper/io/carmen_line.h"
+#include "mapper/io/carmen_lines.h"
 #include "mapper/io/carmen_scan_impl.h"
 #include "mapper/io/carmen_twins.h"
-#include "mapper/io/file.h"
 #include "mapper/io/laser_faults.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/scan_clock.h"
@@ -26,9 +25,6 @@
 
 namespace depthgrid {
 namespace {
-
-// 20,000 readings and as many remissions fit; a longer "line" is a binary file.
-constexpr std::size_t kMaxLineBytes = 1U << 20U;
 
 // Whether odometry was reset or the line is damaged.
 bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double time_s) {
@@ -56,15 +52,14 @@ class CarmenLogSource : public FrameSource {
  public:
   CarmenLogSource(std::string path, const CarmenLogOptions& options,
                   const std::vector<LoopClosure>& loops, const PartOptions& part)
-      : path_(std::move(path)),
+      : lines_(std::move(path)),
+        path_(lines_.Path()),
         options_(options),
         part_(part),
-        line_(kMaxLineBytes),
         faults_(options) {
     for (const LoopClosure& loop : loops) {
       loops_.push_back(CameraLoop(loop, options_.mount.base_from_laser()));
     }
-    RequireUncompressed(path_);
     RequireInRange(options_, "sequence.laser");
     RequireFieldOfView(options_.fov_deg);
     Survey();
@@ -120,7 +115,7 @@ class CarmenLogSource : public FrameSource {
       names_.numbers.push_back(lines_of_scans_ - 1);
       if (place_ != Place::kInPart) continue;
       const double no_return_m = ReachOf(*scan, options_).no_return_m;
-      doubts.check.Add(*scan, no_return_m, line_number_);
+      doubts.check.Add(*scan, no_return_m, lines_.Number());
       faults_.Add(*scan);
       if (last) doubts.speeds_mps.push_back(SpeedMps(*last, *scan));
       last = std::move(scan);
@@ -195,15 +190,12 @@ class CarmenLogSource : public FrameSource {
           "and poses by --poses");
     }
     throw InputError(path_, fmt::format("no usable FLASER or ROBOTLASER1 line among {}{}",
-                                        Counted(line_number_, "line"),
+                                        Counted(lines_.Number(), "line"),
                                         warnings_.empty() ? "" : "; first: " + warnings_[0]));
   }
 
   void Rewind() {
-    RequireFile(path_);
-    file_ = std::ifstream(path_, std::ios::binary);
-    if (!file_) throw InputError(path_, "cannot be read");
-    line_number_ = 0;
+    lines_.Rewind();
     lines_of_scans_ = 0;
     clock_.Rewind();
     next_index_ = 0;
@@ -250,28 +242,8 @@ class CarmenLogSource : public FrameSource {
 
   void Note(const std::string& reason, const std::string& fault = {}) {
     if (place_ == Place::kBehindPart) return;
-    const Problem first = {0, line_number_, fault.empty() ? "" : ": " + fault};
+    const Problem first = {0, lines_.Number(), fault.empty() ? "" : ": " + fault};
     ++problems_.try_emplace(reason, first).first->second.count;
-  }
-
-  // False at the end of the file.
-  bool ReadLine() {
-    file_.getline(line_.data(), static_cast<std::streamsize>(line_.size()));
-    ++line_number_;
-    if (file_.good() || (file_.eof() && !file_.fail())) {
-      // getline counts the line end it took away; at the end of the file there is none.
-      line_size_ = static_cast<std::size_t>(file_.gcount()) - (file_.eof() ? 0U : 1U);
-      return true;
-    }
-    if (file_.eof() || file_.bad()) {
-      --line_number_;
-      return false;
-    }
-    Note(fmt::format("a line longer than {} bytes", kMaxLineBytes));
-    file_.clear();
-    file_.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-    line_size_ = 0;
-    return true;
   }
 
   // Whether the step from the last scan to this one is not a motion.
@@ -312,13 +284,12 @@ class CarmenLogSource : public FrameSource {
   }
 
   std::optional<CarmenScan> NextScan() {
-    while (ReadLine()) {
-      std::string_view text{line_.data(), line_size_};
-      if (line_number_ == 1) text = WithoutByteOrderMark(text);
-      if (names_.stamps_s.empty() && text.find('\0') != std::string_view::npos) {
+    while (const std::optional<LogLine> written = lines_.Next()) {
+      if (written->is_too_long) Note(fmt::format("a line longer than {} bytes", kMaxLineBytes));
+      if (names_.stamps_s.empty() && written->text.find('\0') != std::string_view::npos) {
         has_zero_bytes_ = true;
       }
-      CarmenLine line = ParseCarmenLine(text);
+      CarmenLine line = ParseCarmenLine(written->text);
       if (const auto* damage = std::get_if<CarmenDamage>(&line)) {
         Note(damage->reason, damage->fault);
         lines_of_scans_ += damage->is_scan ? 1 : 0;
@@ -327,11 +298,11 @@ class CarmenLogSource : public FrameSource {
       auto* scan = std::get_if<CarmenScan>(&line);
       if (scan == nullptr) continue;
       if (leaves_out_flaser_ && !scan->states_angles) continue;
-      if (!leaves_out_flaser_) twins_.Add(*scan, line_number_);
+      if (!leaves_out_flaser_) twins_.Add(*scan, lines_.Number());
       if (scan->max_range_m == 0.0 && options_.max_range_m == 0.0) {
         scan->max_range_m = front_max_m_;
       }
-      const std::optional<double> stamp_s = clock_.Take(scan->stamp_s, line_number_);
+      const std::optional<double> stamp_s = clock_.Take(scan->stamp_s, lines_.Number());
       if (!stamp_s) {
         ++lines_of_scans_;
         Note("a scan whose stamp is later than all after it",
@@ -340,20 +311,17 @@ class CarmenLogSource : public FrameSource {
       }
       scan->stamp_s = *stamp_s;
       if (!GoOnWith(*scan)) continue;
-      if (file_.eof()) Note("the last line has no line end; it is used, but may be cut");
+      if (!written->has_end) Note("the last line has no line end; it is used, but may be cut");
       return std::move(*scan);
     }
     return std::nullopt;
   }
 
-  std::string path_;
+  CarmenLines lines_;
+  const std::string& path_;  // that of lines_
   CarmenLogOptions options_;
   PartOptions part_;
   std::vector<LoopClosure> loops_;
-  std::ifstream file_;
-  std::vector<char> line_;
-  std::size_t line_size_ = 0;
-  int line_number_ = 0;
   int next_index_ = 0;
   std::int64_t lines_of_scans_ = 0;
   FrameNames names_;

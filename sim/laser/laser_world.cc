@@ -88,6 +88,7 @@ LaserWorld ReadLaserWorld(const std::string& path) {
     }
     world.walls.push_back(wall);
   }
+  if (file.bad()) throw InputError(path, "cannot be read");
   if (world.walls.empty()) throw InputError(path, "has no segment");
   return world;
 }

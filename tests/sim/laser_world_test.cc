@@ -143,6 +143,8 @@ TEST_F(LaserWorldFile, ReadsSegmentsAndRefusesOthers) {
   Write("world.txt", "# nothing\n");
   EXPECT_THROW(ReadLaserWorld(Path("world.txt")), InputError);
   EXPECT_THROW(ReadLaserWorld("/nonexistent"), InputError);
+  // Every read of this file fails.
+  EXPECT_EQ(RefusalOf([] { ReadLaserWorld("/proc/self/mem"); }), "/proc/self/mem: cannot be read");
 }
 
 TEST(OdometryNoise, MeanErrorIsTheOneAskedFor) {
