@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <iterator>
@@ -23,13 +22,6 @@ constexpr int kMostLastColumns = 8;
 constexpr double kMaxYawRad = 1e6;  // beyond is a damaged number
 constexpr std::string_view kDamagedPose = "with a damaged pose (no numbers, or beyond 10,000 km)";
 constexpr double kMaxFieldOfViewRad = 2.0 * kPi + 1e-6;
-
-std::optional<double> NumberIn(std::string_view token) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
-  if (error != std::errc{} || end != token.data() + token.size()) return std::nullopt;
-  return value;
-}
 
 // A field for error messages; "missing" at the end of a line.
 std::string Shown(std::string_view token) {
@@ -52,7 +44,7 @@ class Tokens {
     return token;
   }
 
-  std::optional<double> NextNumber() { return NumberIn(Next()); }
+  std::optional<double> NextNumber() { return ParseNumber(Next()); }
 
  private:
   static bool IsBlank(char c) { return c == ' ' || c == '\t' || c == '\r'; }
@@ -80,7 +72,7 @@ struct NumberList {
 // Reads a count and as many numbers.
 NumberList ReadList(Tokens& tokens, int minimum) {
   const std::string_view stated = tokens.Next();
-  const std::optional<double> count = NumberIn(stated);
+  const std::optional<double> count = ParseNumber(stated);
   if (!count || !(*count >= minimum && *count <= kMaxReadings) || *count != std::floor(*count)) {
     return {{},
             fmt::format("their count is {}, must be a whole number from {} to {}", Shown(stated),
@@ -90,7 +82,7 @@ NumberList ReadList(Tokens& tokens, int minimum) {
   values.reserve(static_cast<std::size_t>(*count));
   for (int i = 0; i < static_cast<int>(*count); ++i) {
     const std::string_view token = tokens.Next();
-    const std::optional<double> value = NumberIn(token);
+    const std::optional<double> value = ParseNumber(token);
     if (!value) {
       return {{},
               fmt::format("number {} of {} is {}, must be a number", i + 1, *count, Shown(token))};
@@ -126,13 +118,13 @@ std::optional<CarmenDamage> ReadEnd(Tokens& tokens, std::string_view name, int s
   constexpr std::string_view kNoTime = "without a time";
   for (int i = 0; i < skip; ++i) {
     const std::string_view token = tokens.Next();
-    if (NumberIn(token)) continue;
+    if (ParseNumber(token)) continue;
     return Damage(name, kNoTime,
                   fmt::format("number {} of {} before it is {}, must be a number", i + 1, skip,
                               Shown(token)));
   }
   const std::string_view time = tokens.Next();
-  const std::optional<double> stamp_s = NumberIn(time);
+  const std::optional<double> stamp_s = ParseNumber(time);
   if (!stamp_s || !std::isfinite(*stamp_s)) {
     return Damage(name, kNoTime, fmt::format("it is {}, must be a number of seconds", Shown(time)));
   }
@@ -148,11 +140,11 @@ std::optional<CarmenDamage> ReadEnd(Tokens& tokens, std::string_view name, int s
   }
   // If a line has more readings than stated, the columns are shifted and the time is in the host's
   // place. Some hosts are numbers, but then only the logger's time follows.
-  const bool is_number = NumberIn(host).has_value();
+  const bool is_number = ParseNumber(host).has_value();
   for (int i = 0;; ++i) {
     const std::string_view token = tokens.Next();
     if (token.empty()) break;
-    if (is_number && (i > 0 || !NumberIn(token))) {
+    if (is_number && (i > 0 || !ParseNumber(token))) {
       return Damage(name, "with other columns than its count of readings says");
     }
     if (i == kMostLastColumns) {
@@ -221,7 +213,7 @@ CarmenLine ParseRobotLaser(Tokens& tokens) {
   double header[std::size(kFields)];
   for (std::size_t i = 0; i < std::size(kFields); ++i) {
     const std::string_view token = tokens.Next();
-    const std::optional<double> number = NumberIn(token);
+    const std::optional<double> number = ParseNumber(token);
     if (!number || !std::isfinite(*number)) {
       return Damage(kName, "with a damaged header",
                     fmt::format("the {} is {}, must be a number", kFields[i], Shown(token)));

@@ -71,5 +71,17 @@ TEST(CarmenLines, RefusesWhatIsNoText) {
   EXPECT_EQ(RefusalOf([] { CarmenLines lines("/nonexistent"); }), "/nonexistent: no such file");
 }
 
+TEST(CarmenLine, NumbersMayHaveAPlusSign) {
+  const TextFile file("FLASER +3 +1.0 81.83 +2e0 +1 -2 +0.5 +0.9 2 +.5 +11.5 host 0.2\n");
+  const auto source = OpenCarmenLog(file.path(), {.fov_deg = 180.0});
+  EXPECT_THAT(source->Warnings(), ::testing::IsEmpty());
+  const auto frame = source->Next();
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->stamp_s, 11.5);
+  EXPECT_EQ(frame->scan->beams[2].range_m, 2.0F);
+  EXPECT_THAT(WarningsOf(ScanAt(0, 0, 1) + "FLASER 3 +-1 2 2 1 2 0.5 0.9 2 0.5 12 h 0.2\n"),
+              ::testing::HasSubstr("number 1 of 3 is '+-1', must be a number"));
+}
+
 }  // namespace
 }  // namespace depthgrid
