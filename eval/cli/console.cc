@@ -12,7 +12,7 @@
 #include <stdexcept>
 
 #include "eval/cli/interrupts.h"
-#include "sim/depth/usable_threads.h"
+#include "mapper/core/usable_threads.h"
 
 namespace depthgrid::cli {
 namespace {

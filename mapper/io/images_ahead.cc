@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <system_error>
-#include <thread>
 #include <utility>
+
+#include "mapper/core/usable_threads.h"
 
 namespace depthgrid::internal {
 namespace {
@@ -38,7 +39,7 @@ void ImagesAhead::Begin() {
 }
 
 std::size_t UsualImagesAhead() {
-  const std::size_t cores = std::thread::hardware_concurrency();
+  const auto cores = static_cast<std::size_t>(UsableThreads());
   return cores < 2 ? 0 : std::min(cores, kMostAhead);
 }
 

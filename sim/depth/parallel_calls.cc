@@ -9,7 +9,7 @@
 #include <tbb/task_arena.h>
 #endif
 
-#include "sim/depth/usable_threads.h"
+#include "mapper/core/usable_threads.h"
 
 namespace depthgrid {
 

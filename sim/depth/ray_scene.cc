@@ -7,8 +7,8 @@
 #include <string>
 
 #include "mapper/core/error.h"
+#include "mapper/core/usable_threads.h"
 #include "sim/depth/ray_scene_impl.h"
-#include "sim/depth/usable_threads.h"
 
 namespace depthgrid {
 namespace {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sched.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
@@ -11,6 +13,7 @@
 #include <thread>
 
 #include "mapper/core/error.h"
+#include "mapper/core/usable_threads.h"
 #include "mapper/io/recording.h"
 
 namespace depthgrid {
@@ -128,6 +131,22 @@ class RecordingAheadTest : public ::testing::Test {
   std::atomic<int> calls_ = 0;
 };
 
+TEST(ImagesAhead, NoneIsReadAheadOnTheOneCoreThatIsAllowed) {
+  cpu_set_t before, one;
+  ASSERT_EQ(::sched_getaffinity(::getpid(), sizeof(before), &before), 0);
+  int core = 0;
+  while (!CPU_ISSET(core, &before)) ++core;
+  CPU_ZERO(&one);
+  CPU_SET(core, &one);
+  ASSERT_EQ(::sched_setaffinity(::getpid(), sizeof(one), &one), 0);
+  const int threads = UsableThreads();
+  const std::size_t ahead = internal::UsualImagesAhead();
+  EXPECT_EQ(::sched_setaffinity(::getpid(), sizeof(before), &before), 0);
+  EXPECT_EQ(threads, 1);
+  EXPECT_EQ(ahead, 0U);
+  EXPECT_EQ(UsableThreads(), CPU_COUNT(&before));
+}
+
 TEST_F(RecordingAheadTest, DamageIsToldInTheImagesOrder) {
   const auto source = Open();
   for (int i = 0; i < 10; ++i) {
@@ -147,7 +166,7 @@ TEST_F(RecordingAheadTest, DamageIsToldInTheImagesOrder) {
 }
 
 TEST_F(RecordingAheadTest, TheNextImagesAreReadWhileAFrameIsAtWork) {
-  if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
+  if (UsableThreads() < 2) GTEST_SKIP() << "one core";
   const auto source = Open();
   const int before = calls_;  // whether there is a readable image at all
   source->Next();
