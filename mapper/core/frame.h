@@ -55,7 +55,8 @@ struct Frame {
   // poses is a motion only within an epoch, and a jump taken for a motion bends the map
   // permanently. A step inconsistent with the previous motion (mapper/core/slam_step.h) begins an
   // epoch by itself. Unreported corrections are missed when smaller than 0.1 m + 10 m/s^2 t^2 over
-  // a step of duration t; for t above a second only a jump back to the origin is noticed.
+  // a step of duration t; for t above a second only a jump back to the origin or first pose, and
+  // one of more than 10 m and 50 m/s, are noticed.
   int slam_epoch = 0;
   // Loop closures reported with this frame, applied before its pose is used.
   std::vector<LoopClosure> loops;
