@@ -150,6 +150,11 @@ void RequireMergeAlone(const SweepArguments& arguments) {
   refuse_if(!arguments.shard.empty(), "--shard");
   refuse_if(!arguments.common.set.empty(), "--set");
   refuse_if(arguments.executor == "slurm", "--executor");
+  refuse_if(!arguments.slurm_options.empty(), "--slurm-options");
+  refuse_if(arguments.slurm_tasks != 0, "--slurm-tasks");
+  refuse_if(arguments.jobs != 0, "--jobs");
+  refuse_if(!arguments.common.cache.empty(), "--cache");
+  refuse_if(arguments.common.no_cache, "--no-cache");
 }
 
 void Merge(const SweepArguments& arguments) {

@@ -202,7 +202,8 @@ TEST_F(SweepRepeat, JoiningTakesNoOptionsOfARun) {
   Write("gains.yaml", "experiment: ./small.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
   Succeed("sweep ./gains.yaml --shard 1/1 -o part");
   for (const std::string option :
-       {"--dry-run", "--shard 1/2", "--set frames=3", "--executor slurm"}) {
+       {"--dry-run", "--shard 1/2", "--set frames=3", "--executor slurm", "--jobs 2",
+        "--slurm-tasks 2", "--slurm-options x", "--cache x", "--no-cache"}) {
     const Outcome refused = Program("sweep --merge part -o joined " + option);
     EXPECT_EQ(refused.exit_code, 2);
     EXPECT_EQ(refused.err, "depthgrid: " + option.substr(0, option.find(' ')) +
