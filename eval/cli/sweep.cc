@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <functional>
@@ -33,20 +32,9 @@ namespace {
 namespace fs = std::filesystem;
 
 Shard ShardOf(const std::string& text) {
-  Shard shard;
-  if (text.empty()) return shard;
-  const std::size_t slash = text.find('/');
-  const auto number = [&](std::string_view part, int& value) {
-    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
-    return error == std::errc() && end == part.data() + part.size();
-  };
-  const bool read = slash != std::string::npos &&
-                    number(std::string_view(text).substr(0, slash), shard.index) &&
-                    number(std::string_view(text).substr(slash + 1), shard.count);
-  if (!read || shard.index < 1 || shard.index > shard.count) {
-    throw InputError("--shard", "is '" + text + "', must be I/N with I from 1 to N");
-  }
-  return shard;
+  if (text.empty()) return {};
+  if (const std::optional<Shard> shard = ParseShard(text)) return *shard;
+  throw InputError("--shard", fmt::format("is '{}', {}", text, kShardRule));
 }
 
 // The locked folder of a sweep. If it was created here, it is removed again when neither runs here
@@ -161,7 +149,6 @@ void Merge(const SweepArguments& arguments) {
   RequireMergeAlone(arguments);
   const std::string& output = arguments.common.output;
   const SweepFolder folder(output, arguments.common.force);
-  if (SweepDatabase::Exists(output)) throw InputError(output, "holds a sweep already");
   MergeSweeps(arguments.merge, output);
   const SweepResults results = ReadSweep(output);
   if (const auto doubt = DoubtOfBuilds(output, results.environment)) Warn({*doubt});
@@ -322,7 +309,9 @@ void SweepOnSlurm(const SweepArguments& arguments, const SweepPlan& plan,
   }
   bar.Clear();
   // Throws if it is another sweep.
-  Summarise(OpenOrCreateSweep(output, plan, {}, false).Results());
+  const SweepDatabase database = OpenOrCreateSweep(output, plan, {}, false);
+  WriteResultsCsv(database, output);  // one killed after merging may have left none
+  Summarise(database.Results());
 }
 
 }  // namespace

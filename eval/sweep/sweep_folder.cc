@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
 #include <system_error>
@@ -37,8 +38,6 @@ bool HasFilesOnAxes(const SweepPlan& plan) {
 std::string AbsoluteFolder(const std::string& folder) {
   return (folder.empty() ? fs::current_path() : fs::absolute(folder)).string();
 }
-
-std::string ShardText(const Shard& shard) { return fmt::format("{}/{}", shard.index, shard.count); }
 
 Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
   Environment environment = {{"title", plan.title},       {"sweep", plan.sweep_text},
@@ -132,30 +131,41 @@ std::vector<PlannedRun> PlanOf(const SweepResults& results) {
   return plan;
 }
 
+Shard PartIn(const std::string& folder, const Environment& environment) {
+  const auto text = environment.find("shard");
+  if (text == environment.end()) {
+    throw InputError(
+        folder,
+        fmt::format("does not say which part it is: its `shard` is missing, {}", kShardRule));
+  }
+  if (const auto shard = ParseShard(text->second)) return *shard;
+  throw InputError(folder, fmt::format("its `shard` is '{}', {}", text->second, kShardRule));
+}
+
 // Throws unless the parts are all of 1/N .. N/N, each once.
 void RequireWhole(const std::vector<std::string>& folders, const std::vector<SweepResults>& parts) {
-  std::map<std::string, std::string> seen;
-  std::string count;
+  std::map<int, std::string> seen;
+  int count = 0;
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const std::string shard = parts[i].environment.at("shard");
-    const std::string of = shard.substr(shard.find('/') + 1);
-    if (!count.empty() && of != count) {
-      throw InputError(folders[i],
-                       fmt::format("is one of {} parts, {} is one of {}", of, folders[0], count));
+    const Shard shard = PartIn(folders[i], parts[i].environment);
+    if (count != 0 && shard.count != count) {
+      throw InputError(folders[i], fmt::format("is one of {} parts, {} is one of {}", shard.count,
+                                               folders[0], count));
     }
-    count = of;
-    const auto [there, is_new] = seen.try_emplace(shard, folders[i]);
+    count = shard.count;
+    const auto [there, is_new] = seen.try_emplace(shard.index, folders[i]);
     if (!is_new) {
-      throw InputError(folders[i], fmt::format("is part {}, as {} is", shard, there->second));
+      throw InputError(folders[i],
+                       fmt::format("is part {}, as {} is", ShardText(shard), there->second));
     }
   }
-  for (int index = 1; index <= std::stoi(count); ++index) {
-    const std::string shard = fmt::format("{}/{}", index, count);
-    if (!seen.contains(shard)) throw InputError("--merge", "part " + shard + " is missing");
+  for (int index = 1; index <= count; ++index) {
+    if (seen.contains(index)) continue;
+    throw InputError("--merge", "part " + ShardText({index, count}) + " is missing");
   }
 }
 
-// The list "A, B" of `key`; "unknown" if an earlier version did not write it.
+// The value of `key`, for some a list "A, B"; "unknown" if an earlier version did not write it.
 std::string ListIn(const Environment& environment, const std::string& key) {
   const auto found = environment.find(key);
   return found != environment.end() ? found->second : "unknown";
@@ -168,6 +178,60 @@ std::string Joined(std::string entries, const std::string& more) {
     if ((" " + entries + ",").find(" " + entry + ",") == std::string::npos) entries += ", " + entry;
   }
   return entries;
+}
+
+// A sweep's finished runs, as far as tables that name their columns in another order are equal.
+struct FinishedRun {
+  int point = 0;
+  std::string failure;
+  std::map<std::string, std::string> parameters;
+  std::map<std::string, double> values;  // of metrics and times, where defined
+
+  bool operator==(const FinishedRun&) const = default;
+};
+
+void AddRuns(const SweepResults& results, std::map<int, FinishedRun>& runs) {
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    FinishedRun& run = runs[results.runs[row]];
+    run.point = results.points[row];
+    run.failure = results.failures[row];
+    for (const SweepParameter& parameter : results.parameters) {
+      run.parameters[parameter.key] = parameter.texts[row];
+    }
+    for (const auto* columns : {&results.metrics, &results.times}) {
+      for (const SweepColumn& column : *columns) {
+        if (!std::isnan(column.values[row])) run.values[column.name] = column.values[row];
+      }
+    }
+  }
+}
+
+// Whether `whole` is what merging the parts gives, whose environment that is.
+bool IsMergeOf(const SweepResults& whole, const std::vector<SweepResults>& parts,
+               const Environment& environment) {
+  std::vector<std::string> respects = kWhatMakesASweep;
+  respects.emplace_back("shard");
+  for (const std::string& respect : respects) {
+    if (ListIn(whole.environment, respect) != ListIn(environment, respect)) return false;
+  }
+  std::map<int, FinishedRun> of_whole, of_parts;
+  AddRuns(whole, of_whole);
+  for (const SweepResults& part : parts) AddRuns(part, of_parts);
+  return of_whole == of_parts && of_whole.size() == static_cast<std::size_t>(whole.planned_runs);
+}
+
+// The environment of the whole.
+Environment JoinedEnvironment(const std::vector<SweepResults>& parts) {
+  Environment environment = parts[0].environment;
+  environment.erase("schema");
+  for (const std::string key : {"build", "jobs"}) {
+    environment[key] = ListIn(parts[0].environment, key);
+    for (const SweepResults& part : parts) {
+      environment[key] = Joined(environment[key], ListIn(part.environment, key));
+    }
+  }
+  environment["shard"] = ShardText({});
+  return environment;
 }
 
 }  // namespace
@@ -256,21 +320,20 @@ void MergeSweeps(const std::vector<std::string>& folders, const std::string& tar
     }
   }
   RequireWhole(folders, parts);
+  const Environment environment = JoinedEnvironment(parts);
+  if (SweepDatabase::Exists(target)) {
+    const SweepDatabase there = SweepDatabase::Open(target);
+    if (!IsMergeOf(there.Results(), parts, environment)) {
+      throw InputError(target, "holds a sweep already, which is not the whole of these parts");
+    }
+    return WriteResultsCsv(there, target);
+  }
   std::vector<PlannedRun> plan;
   std::vector<RunOutcome> outcomes;
   for (const SweepResults& part : parts) {
     for (PlannedRun& run : PlanOf(part)) plan.push_back(std::move(run));
     for (RunOutcome& outcome : OutcomesOf(part)) outcomes.push_back(std::move(outcome));
   }
-  Environment environment = parts[0].environment;
-  environment.erase("schema");
-  for (const std::string key : {"build", "jobs"}) {
-    environment[key] = ListIn(parts[0].environment, key);
-    for (const SweepResults& part : parts) {
-      environment[key] = Joined(environment[key], ListIn(part.environment, key));
-    }
-  }
-  environment["shard"] = ShardText({});
   std::vector<std::string> keys;
   for (const SweepParameter& parameter : parts[0].parameters) keys.push_back(parameter.key);
   const SweepDatabase merged = SweepDatabase::Create(target, environment, keys, plan, outcomes);

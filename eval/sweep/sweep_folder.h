@@ -46,9 +46,10 @@ std::optional<std::string> DoubtOfBuilds(const std::string& folder,
 // Writes results.csv beside the database, with the results so far.
 void WriteResultsCsv(const SweepDatabase& database, const std::string& folder);
 
-// Merges the parts of one sweep into `folder`, which contains no sweep yet. Throws InputError when
-// parts are missing, unfinished or given twice, or are of different sweeps, versions or instruction
-// sets.
+// Merges the parts of one sweep into `folder`, which contains no sweep yet, or the merge of these
+// parts: then only results.csv is written, which a kill may have left out. Throws InputError when
+// it contains another sweep, and when parts are missing, unfinished or given twice, or are of
+// different sweeps, versions or instruction sets.
 void MergeSweeps(const std::vector<std::string>& parts, const std::string& folder);
 
 }  // namespace depthgrid

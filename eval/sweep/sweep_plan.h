@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "eval/experiment/experiment_options.h"
+#include "eval/sweep/shard.h"
 #include "eval/sweep/sweep_axes.h"
 #include "eval/sweep/sweep_database.h"
 
@@ -28,12 +29,6 @@ struct StopOptions {
 
   bool Enabled() const { return !metric.empty(); }
   void Visit(OptionsVisitor& v);
-};
-
-// One of `count` equal parts of a sweep, each for one machine.
-struct Shard {
-  int index = 1;  // from 1
-  int count = 1;
 };
 
 struct SweepPlan {

@@ -101,6 +101,16 @@ TEST_F(SlurmProgram, StoppedItLeavesItsJobsAndPartsAndGoesOn) {
   EXPECT_TRUE(TableOf("out") == TableOf("here"));
 }
 
+// As a kill after the database, before the table, leaves them.
+TEST_F(SlurmProgram, ATableThatIsMissingIsWritten) {
+  Succeed(kOnSlurm + std::string("out"));
+  const std::string table = ReadFile(Path("out/results.csv"));
+  fs::remove(Path("out/results.csv"));
+  Succeed(kOnSlurm + std::string("out"));
+  EXPECT_EQ(ReadFile(Path("out/results.csv")), table);
+  EXPECT_EQ(ReadFile(Path("names")), "depthgrid-sweep\n");  // no job was started again
+}
+
 TEST_F(SlurmProgram, APartThatComesToNothingLeavesItsLogToRead) {
   Play("echo no such node; test $SLURM_ARRAY_TASK_ID = 2 || sh \"$1\"");
   const Outcome outcome = Program(kOnSlurm + std::string("out"));

@@ -194,8 +194,50 @@ TEST_F(SweepRepeat, PartsAreJoinedByOneProgramAtATime) {
   EXPECT_EQ(second.err, "depthgrid: joined: another program is working on this sweep\n");
   ::close(lock);
   Succeed("sweep --merge part -o joined");
-  EXPECT_EQ(Program("sweep --merge part -o joined").err,
-            "depthgrid: joined: holds a sweep already\n");
+}
+
+// As a kill after the database, before the table, leaves them.
+TEST_F(SweepRepeat, JoinedAgainTheTableIsWrittenAgain) {
+  Write("gains.yaml", "experiment: ./small.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
+  Succeed("sweep ./gains.yaml --shard 1/2 -o part1");
+  Succeed("sweep ./gains.yaml --shard 2/2 -o part2");
+  Succeed("sweep --merge part1 part2 -o joined");
+  const std::string table = ReadFile(Path("joined/results.csv"));
+  const std::string page = ReadFile(Path("joined/report.html"));
+  std::filesystem::remove(Path("joined/results.csv"));
+  std::filesystem::remove(Path("joined/report.html"));
+  Succeed("sweep --merge part2 part1 -o joined");
+  EXPECT_EQ(ReadFile(Path("joined/results.csv")), table);
+  EXPECT_EQ(ReadFile(Path("joined/report.html")), page);
+
+  // The same sweep done anew has other times.
+  Succeed("sweep ./gains.yaml -o whole");
+  const std::string before = ReadFile(Path("whole/results.csv"));
+  const Outcome other = Program("sweep --merge part1 part2 -o whole");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_EQ(other.err,
+            "depthgrid: whole: holds a sweep already, which is not the whole of these parts\n");
+  EXPECT_EQ(ReadFile(Path("whole/results.csv")), before);
+}
+
+TEST_F(SweepRepeat, APartMustSayWhichItIs) {
+  Write("gains.yaml", "experiment: ./small.yaml\naxes: {mapper.fusion.gain: [0, 1]}\n");
+  Succeed("sweep ./gains.yaml --shard 1/1 -o part");
+  for (const char* shard : {"1/x", "one", "2/1", "0/1", ""}) {
+    SweepDatabase::Open(Path("part")).Note("shard", shard);
+    const Outcome outcome = Program("sweep --merge part -o joined");
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_EQ(outcome.err, std::string("depthgrid: part: its `shard` is '") + shard +
+                               "', must be I/N with I from 1 to N\n");
+  }
+  std::filesystem::create_directory(Path("bare"));
+  SweepDatabase::Create(Path("bare"), {}, {"seed"}, {{0, 0, {"1"}}}).Record({0, "", {}, {}});
+  const Outcome outcome = Program("sweep --merge bare -o joined");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_EQ(outcome.err,
+            "depthgrid: bare: does not say which part it is: its `shard` is missing, must be I/N "
+            "with I from 1 to N\n");
+  EXPECT_FALSE(std::filesystem::exists(Path("joined")));
 }
 
 TEST_F(SweepRepeat, JoiningTakesNoOptionsOfARun) {
