@@ -11,9 +11,7 @@
 #include "eval/cli/interrupts.h"
 #include "eval/cli/shader_cache.h"
 #include "eval/cli/video_output.h"
-#include "eval/doubts/crossing_check.h"
-#include "eval/doubts/truth_check.h"
-#include "eval/doubts/view_check.h"
+#include "eval/doubts/experiment_doubts.h"
 #include "eval/experiment/idle_settings.h"
 #include "eval/experiment/shipped.h"
 #include "eval/experiment/study.h"
@@ -117,12 +115,10 @@ void RunOne(const RunArguments& arguments) {
   ProgressBar bar("mapping");
   const ExperimentRun run = RunExperiment(options, ContextOf(arguments, bar));
   RunRecord record = RecordOf(run.options, run.world, run.slam, run.mapping, run.truth, run.scores);
-  const auto doubts = DoubtsOfSettings(arguments.experiment, arguments.common.set);
-  record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
-  for (const auto& doubt :
-       {DoubtOfView(run.mapping, run.options), DoubtOfCrossing(run.mapping.result),
-        DoubtOfTruth(run.world, run.truth, run.options)}) {
-    if (doubt) record.warnings.push_back(*doubt);
+  for (const std::vector<std::string>& doubts :
+       {DoubtsOfSettings(arguments.experiment, arguments.common.set),
+        DoubtsOfExperiment(run.world, run.mapping, run.truth, run.options)}) {
+    record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
   }
   record.map_mode = arguments.output.map_mode;
   record.wall_s_total =

@@ -5,9 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "eval/doubts/crossing_check.h"
-#include "eval/doubts/truth_check.h"
-#include "eval/doubts/view_check.h"
+#include "eval/doubts/experiment_doubts.h"
 #include "eval/output/run_folder.h"
 #include "eval/run/input_map.h"
 #include "eval/run/joint_runs.h"
@@ -62,11 +60,9 @@ CaseResult WriteCase(const StudyCase& study_case, const JointRun& run, const Joi
   OutputFolder folder(study_folder.File(study_case.name), false);
   RunRecord record =
       RecordOf(run.options, joint.world, run.slam, run.mapping, joint.truth, run.scores);
-  for (const auto& doubt :
-       {DoubtOfView(run.mapping, run.options), DoubtOfCrossing(run.mapping.result),
-        DoubtOfTruth(joint.world, joint.truth, run.options)}) {
-    if (doubt) record.warnings.push_back(*doubt);
-  }
+  const std::vector<std::string> doubts =
+      DoubtsOfExperiment(joint.world, run.mapping, joint.truth, run.options);
+  record.warnings.insert(record.warnings.end(), doubts.begin(), doubts.end());
   record.map_mode = map_mode;
   record.wall_s_total = times.wall_s;
   record.cpu_s_total = times.cpu_s;
