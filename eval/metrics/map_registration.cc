@@ -139,11 +139,6 @@ CellSet FacesNear(const StateMap& map, const CellSet& scored) {
   return InBoth(WallFaces(map), Grown(scored, kNearCells));
 }
 
-std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap& estimate,
-                                           const CellSet& scored) {
-  return RegisterWalls(truth, {CellsIn(estimate, CellState::kOccupied), {}}, scored);
-}
-
 std::optional<MapRegistration> RegisterWalls(const StateMap& truth, const PlacedWalls& estimate,
                                              const CellSet& scored) {
   const CellSet true_walls = FacesNear(truth, scored);

@@ -31,9 +31,6 @@ struct PlacedWalls {
 // cells. `truth` and `scored` have the same geometry; all cells have the same size.
 std::optional<MapRegistration> RegisterWalls(const StateMap& truth, const PlacedWalls& estimate,
                                              const CellSet& scored);
-// The same for a map on the truth's grid.
-std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap& estimate,
-                                           const CellSet& scored);
 
 // A registration from a motion found by other means.
 MapRegistration RegistrationBy(const Pose2& truth_from_estimate, const PlacedWalls& estimate);

@@ -87,7 +87,6 @@ WilcoxonResult Test(const PairedDifferences& differences, WilcoxonMethod method)
   }
   const double total = static_cast<double>(result.pairs) * (result.pairs + 1);
   const double smaller = std::min(plus, total - plus);
-  result.rank_sum = 0.5 * plus;
   result.statistic = 0.5 * smaller;
   result.rank_biserial = (2.0 * plus - total) / total;
   result.exact = method == WilcoxonMethod::kExact ||

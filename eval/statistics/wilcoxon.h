@@ -17,11 +17,12 @@ enum class WilcoxonMethod {
 constexpr int kWilcoxonExactPairs = 50;
 
 struct WilcoxonResult {
-  int pairs = 0;           // differences that are not zero: only these are ranked (Wilcoxon 1945)
-  int zeros = 0;           // those that are
-  double rank_sum = 0.0;   // of the positive differences, W+; tied sizes share their mean rank
-  double statistic = 0.0;  // the smaller of W+ and W-
-  double p_value = 1.0;    // two-sided; 1 when all differences are zero
+  int pairs = 0;  // differences that are not zero: only these are ranked (Wilcoxon 1945)
+  int zeros = 0;  // those that are
+  // The smaller of W+ and W-, the sums of the ranks of the positive and of the negative
+  // differences; tied sizes share their mean rank.
+  double statistic = 0.0;
+  double p_value = 1.0;  // two-sided; 1 when all differences are zero
   bool exact = true;
   // (W+ - W-) / (W+ + W-): 1 when every difference is positive, 0 when they balance.
   double rank_biserial = 0.0;

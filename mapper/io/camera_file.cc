@@ -42,8 +42,6 @@ CameraFile ParseCameraFile(const std::string& text, const std::string& place) {
   return file;
 }
 
-CameraFile ReadCameraFile(const std::string& path) { return ParseCameraFile(ReadFile(path), path); }
-
 void WriteCameraFile(const std::string& path, const CameraFile& file) {
   WriteFile(path, ToYaml(file));
 }

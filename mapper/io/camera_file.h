@@ -23,7 +23,6 @@ struct CameraFile {
 
 // Keys width height fx fy cx cy, all required; distortion (k1 k2 p1 p2 k3: four or five numbers, or
 // none) and depth_scale. Throws InputError.
-CameraFile ReadCameraFile(const std::string& path);
 CameraFile ParseCameraFile(const std::string& text, const std::string& place);
 void WriteCameraFile(const std::string& path, const CameraFile& file);
 

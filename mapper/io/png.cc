@@ -90,15 +90,6 @@ void WriteRgbPng(const std::string& path, const RgbImage& image) {
   WriteFile(path, EncodeRgbPng(image));
 }
 
-std::string EncodeGreyPng(const GreyImage& image) {
-  return EncodePng({PngKind::kGrey8, image.width_px, image.height_px, image.grey});
-}
-
-GreyImage DecodeGreyPng(std::string_view png, const std::string& place) {
-  PngPixels pixels = DecodePng(png, PngKind::kGrey8, place);
-  return {pixels.width_px, pixels.height_px, std::move(pixels.bytes)};
-}
-
 RgbaImage DecodeRgbaPng(std::string_view png, const std::string& place) {
   PngPixels pixels = DecodePng(png, PngKind::kRgba8, place);
   return {pixels.width_px, pixels.height_px, std::move(pixels.bytes)};

@@ -46,10 +46,6 @@ std::string EncodeRgbPng(const RgbImage& image);
 RgbImage DecodeRgbPng(std::string_view png, const std::string& place);
 void WriteRgbPng(const std::string& path, const RgbImage& image);
 
-// Grey images; colour is not converted but rejected.
-std::string EncodeGreyPng(const GreyImage& image);
-GreyImage DecodeGreyPng(std::string_view png, const std::string& place);
-
 // Any PNG as 8-bit red, green, blue, alpha, for files in which transparency has a meaning.
 struct RgbaImage {
   int width_px = 0;

@@ -1,10 +1,12 @@
 // Small maps drawn as text, and a room that can be moved.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "eval/metrics/cell_maps.h"
+#include "eval/metrics/map_registration.h"
 #include "mapper/core/pose2.h"
 
 namespace depthgrid {
@@ -63,6 +65,12 @@ inline CellSet Everywhere(const GridGeometry& geometry) {
   CellSet all(geometry);
   std::fill(all.members.begin(), all.members.end(), std::uint8_t{1});
   return all;
+}
+
+// RegisterWalls() for a map on the truth's grid.
+inline std::optional<MapRegistration> RegisterMap(const StateMap& truth, const StateMap& estimate,
+                                                  const CellSet& scored) {
+  return RegisterWalls(truth, {CellsIn(estimate, CellState::kOccupied), {}}, scored);
 }
 
 }  // namespace depthgrid
