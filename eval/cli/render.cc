@@ -84,9 +84,7 @@ void RenderNamed(const RenderArguments& arguments) {
     }
   }
   if (!any_shows) Warn({NothingShown(world.depth_range)});
-  std::vector<double> stamps_s;
-  for (const StampedPose& pose : world.trajectory) stamps_s.push_back(pose.stamp_s);
-  writer.Finish(stamps_s, !arguments.no_colour, world.trajectory);
+  writer.Finish(StampsOf(world.trajectory), !arguments.no_colour, world.trajectory);
   WriteTruthMaps(folder.work().string(), truth);
   WriteFile(folder.File("render.yaml"), ToYaml(options) + Provenance(&world));
   folder.Commit();

@@ -10,9 +10,9 @@
 #include "eval/files/one_result.h"
 #include "eval/files/shell_word.h"
 #include "mapper/core/error.h"
+#include "mapper/core/trajectory.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
-#include "mapper/io/pose_track.h"
 #include "mapper/io/slam_files.h"
 #include "mapper/io/trajectory_file.h"
 #include "mapper/io/tum_folder.h"
@@ -31,8 +31,7 @@ Trajectory TrueFrames(const std::string& folder) {
   std::vector<std::string> warnings;
   const Trajectory truth = ReadTrajectory(truth_path, warnings);
   Warn(warnings);
-  std::vector<double> stamps_s;
-  for (const StampedPose& pose : truth) stamps_s.push_back(pose.stamp_s);
+  const std::vector<double> stamps_s = StampsOf(truth);
   const RecordingOptions options;
   Trajectory frames;
   const Recording recording = ListTumFolder(folder, options);

@@ -56,10 +56,6 @@ Doubt DoubtOfDirection(const std::vector<PosePair>& pairs, const TrajectoryNames
 // A robot base's axes are x forward, y left, z up; a camera's x right, y down, z forward.
 Eigen::Quaterniond BaseFromCamera() { return CameraOf(Pose2{}, 0.0).rotation; }
 
-double AngleOf(const Eigen::Quaterniond& rotation) {
-  return rotation.angularDistance(Eigen::Quaterniond::Identity());
-}
-
 // Mount settings with which the program corrects this rotation; a camera need not look level or
 // ahead.
 std::string MountText(const Eigen::Quaterniond& base_from_camera) {

@@ -7,6 +7,7 @@
 #include "eval/metrics/cell_maps.h"
 #include "eval/metrics/distance_transform.h"
 #include "eval/metrics/statistics.h"
+#include "eval/metrics/wall_distances.h"
 
 namespace depthgrid {
 namespace {
@@ -67,15 +68,13 @@ bool IsEmpty(const CellSet& mask) {
 void ScoreDistances(const CellSet& truth, const CellSet& estimate, const CellSet& scored,
                     CellScores& scores) {
   if (IsEmpty(truth) || IsEmpty(estimate)) return;
-  constexpr double kHausdorffFraction = 0.95;
   const auto forth = DirectedDistances(estimate, scored, SquaredDistances(truth));
   const auto back = DirectedDistances(truth, scored, SquaredDistances(estimate));
   if (!forth.empty()) scores.estimate_to_truth_m = Summarise(forth).mean;
   if (!back.empty()) scores.truth_to_estimate_m = Summarise(back).mean;
   if (forth.empty() || back.empty()) return;
   scores.chamfer_m = 0.5 * (*scores.estimate_to_truth_m + *scores.truth_to_estimate_m);
-  scores.hausdorff95_m =
-      std::max(Percentile(forth, kHausdorffFraction), Percentile(back, kHausdorffFraction));
+  scores.hausdorff95_m = Hausdorff95(forth, back);
 }
 
 void ScoreConfusion(const StateMap& truth, const StateMap& estimate, const CellSet& scored,

@@ -10,11 +10,6 @@
 namespace depthgrid {
 namespace {
 
-// Of a unit quaternion; accurate for small angles, where acos of the trace is not.
-double AngleOf(const Eigen::Quaterniond& rotation) {
-  return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
-}
-
 Eigen::Vector3d ShiftOf(const PosePair& pair) {
   return pair.estimate.world_from_camera.translation - pair.reference.world_from_camera.translation;
 }

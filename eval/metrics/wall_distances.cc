@@ -71,6 +71,11 @@ std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
   return distances_m;
 }
 
+double Hausdorff95(const std::vector<double>& forth, const std::vector<double>& back) {
+  constexpr double kFraction = 0.95;
+  return std::max(Percentile(forth, kFraction), Percentile(back, kFraction));
+}
+
 WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
                                      const CellSet& scored, const Pose2& truth_from_estimate) {
   WallDistanceScore score;
@@ -81,9 +86,7 @@ WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& w
   if (!back_m.empty()) score.truth_to_estimate_m = Summarise(back_m).mean;
   if (forth_m.empty() || back_m.empty()) return score;
   score.chamfer_m = 0.5 * (*score.estimate_to_truth_m + *score.truth_to_estimate_m);
-  constexpr double kHausdorffFraction = 0.95;
-  score.hausdorff95_m =
-      std::max(Percentile(forth_m, kHausdorffFraction), Percentile(back_m, kHausdorffFraction));
+  score.hausdorff95_m = Hausdorff95(forth_m, back_m);
   score.f1_5cm = F1Of(ShareWithin(forth_m, 0.05), ShareWithin(back_m, 0.05));
   score.f1_10cm = F1Of(ShareWithin(forth_m, 0.10), ShareWithin(back_m, 0.10));
   return score;

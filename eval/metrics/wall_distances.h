@@ -16,6 +16,10 @@ namespace depthgrid {
 std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
                                      const std::vector<Eigen::Vector2d>& targets);
 
+// The greater of the 95th percentiles of the distances forth and back: the Hausdorff distance but
+// for a twentieth of the points. At least one of each.
+double Hausdorff95(const std::vector<double>& forth, const std::vector<double>& back);
+
 struct WallDistanceScore {
   // Santos et al. 2013: mean distance to the nearest wall of the other map ("normalised error" and
   // its reverse), metres.

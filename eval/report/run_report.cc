@@ -22,10 +22,10 @@
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/core/trajectory.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 #include "mapper/io/laser_mount.h"
-#include "mapper/io/pose_track.h"
 
 namespace depthgrid {
 namespace {
@@ -58,8 +58,7 @@ Json MapJson(const RunFiles& run) {
 using PosesOfRows = std::vector<std::optional<Pose3>>;
 
 PosesOfRows PosesAt(const Trajectory& trajectory, const std::vector<double>& stamps_s) {
-  std::vector<double> known_s;
-  for (const StampedPose& pose : trajectory) known_s.push_back(pose.stamp_s);
+  const std::vector<double> known_s = StampsOf(trajectory);
   PosesOfRows poses;
   for (const double stamp_s : stamps_s) {
     const auto entry = NearestStamp(known_s, stamp_s, kSameStampS);

@@ -10,7 +10,7 @@
 #include "mapper/core/counted.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
-#include "mapper/io/pose_track.h"
+#include "mapper/core/trajectory.h"
 
 namespace depthgrid {
 namespace {
@@ -50,8 +50,7 @@ Trajectory Collect(const MappingRun& run, PoseOf pose_of) {
 std::vector<std::optional<Pose3>> FinalPosesOf(const std::vector<FrameReport>& reports,
                                                const Trajectory& final_poses) {
   if (final_poses.empty()) return {};
-  std::vector<double> stamps_s;
-  for (const StampedPose& pose : final_poses) stamps_s.push_back(pose.stamp_s);
+  const std::vector<double> stamps_s = StampsOf(final_poses);
   std::vector<std::optional<Pose3>> found;
   for (const FrameReport& report : reports) {
     const auto entry = NearestStamp(stamps_s, report.stamp_s, kMaxStampDifferenceS);

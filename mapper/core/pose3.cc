@@ -19,6 +19,10 @@ Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation) {
   return (2.0 * std::atan2(sine, sign * rotation.w()) / sine * sign) * rotation.vec();
 }
 
+double AngleOf(const Eigen::Quaterniond& rotation) {
+  return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
+}
+
 // Wrapped here because FromTwoVectors takes some ten seconds to compile wherever it is used.
 Eigen::Quaterniond RotationBetween(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   return Eigen::Quaterniond::FromTwoVectors(from, to);

@@ -38,6 +38,9 @@ inline Pose3 Between(const Pose3& world_from_i, const Pose3& world_from_j) {
 // The rotation by |v| about v, and its inverse, whose length is in [0, pi].
 Eigen::Quaterniond ExpRotation(const Eigen::Vector3d& rotation_vector_rad);
 Eigen::Vector3d LogRotation(const Eigen::Quaterniond& rotation);
+// The length of that, of a unit quaternion; accurate for small angles, where acos of the trace is
+// not.
+double AngleOf(const Eigen::Quaterniond& rotation);
 
 // The smallest rotation that takes the direction of `from` to that of `to`, neither of them zero;
 // about any perpendicular axis if they are opposite.

@@ -1,6 +1,8 @@
 // Stamped camera poses, sorted by strictly increasing stamp.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "mapper/core/pose3.h"
@@ -15,5 +17,12 @@ struct StampedPose {
 };
 
 using Trajectory = std::vector<StampedPose>;
+
+std::vector<double> StampsOf(const Trajectory& trajectory);
+
+// Index of the entry whose stamp is nearest (the first on ties) and at most `max_difference_s`
+// away. `stamps_s` is sorted.
+std::optional<std::size_t> NearestStamp(const std::vector<double>& stamps_s, double stamp_s,
+                                        double max_difference_s);
 
 }  // namespace depthgrid

@@ -8,8 +8,8 @@
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/core/frame.h"
+#include "mapper/core/trajectory.h"
 #include "mapper/io/matrix_poses.h"
-#include "mapper/io/pose_track.h"
 
 namespace depthgrid::internal {
 namespace {

@@ -1,7 +1,6 @@
 #include "mapper/io/pose_track.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace depthgrid {
 namespace {
@@ -15,19 +14,6 @@ Pose3 Blend(const Pose3& a, const Pose3& b, double share_of_b) {
   if (a == b) return a;  // without rounding: HeldFrames() compares bits
   return {a.rotation.slerp(share_of_b, b.rotation).normalized(),
           a.translation + share_of_b * (b.translation - a.translation)};
-}
-
-std::optional<std::size_t> NearestStamp(const std::vector<double>& stamps_s, double stamp_s,
-                                        double max_difference_s) {
-  const auto after = std::lower_bound(stamps_s.begin(), stamps_s.end(), stamp_s);
-  auto nearest = after;
-  if (after == stamps_s.end() ||
-      (after != stamps_s.begin() && stamp_s - *(after - 1) <= *after - stamp_s)) {
-    if (after == stamps_s.begin()) return {};
-    nearest = after - 1;
-  }
-  if (std::abs(*nearest - stamp_s) > max_difference_s) return {};
-  return static_cast<std::size_t>(nearest - stamps_s.begin());
 }
 
 SlamOutput SlamOutputOf(const Trajectory& trajectory) {

@@ -5,14 +5,10 @@
 #include <vector>
 
 #include "mapper/core/slam_output.h"
+#include "mapper/core/trajectory.h"
 #include "mapper/io/recording_options.h"
 
 namespace depthgrid {
-
-// Index of the entry whose stamp is nearest (the first on ties) and at most `max_difference_s`
-// away. `stamps_s` is sorted.
-std::optional<std::size_t> NearestStamp(const std::vector<double>& stamps_s, double stamp_s,
-                                        double max_difference_s);
 
 // A trajectory as SLAM output: one epoch, no loops.
 SlamOutput SlamOutputOf(const Trajectory& trajectory);

@@ -45,9 +45,7 @@ struct FramedPose {
 };
 
 std::string RangesOf(const FrameNames& frames, const Trajectory& poses) {
-  std::vector<double> stamps_s;
-  for (const StampedPose& pose : poses) stamps_s.push_back(pose.stamp_s);
-  return StampRanges(frames, stamps_s);
+  return StampRanges(frames, StampsOf(poses));
 }
 
 // The error for a file without a pose at the stamp of any mapped frame.

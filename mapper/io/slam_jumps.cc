@@ -7,7 +7,7 @@
 #include "mapper/core/angle.h"
 #include "mapper/core/median.h"
 #include "mapper/core/slam_step.h"
-#include "mapper/io/pose_track.h"
+#include "mapper/core/trajectory.h"
 
 namespace depthgrid {
 namespace {
@@ -30,14 +30,9 @@ constexpr double kMetresPerRad = 1.0;
 constexpr double kSigmaTranslationM = 0.03;
 constexpr double kSigmaRotationRad = 0.02;
 
-double Angle(const Eigen::Quaterniond& rotation) {
-  return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
-}
-
 std::vector<std::optional<Pose3>> FinalOf(const std::vector<SlamPose>& live,
                                           const Trajectory& final) {
-  std::vector<double> stamps_s;
-  for (const StampedPose& pose : final) stamps_s.push_back(pose.stamp_s);
+  const std::vector<double> stamps_s = StampsOf(final);
   std::vector<std::optional<Pose3>> found;
   for (const SlamPose& pose : live) {
     const auto entry = NearestStamp(stamps_s, pose.stamp_s, kSameFrameS);
@@ -111,7 +106,7 @@ std::optional<LoopClosure> LoopAt(int jump, const std::vector<std::optional<Pose
     if (!final[first] || path_m[second] - path_m[first] < kMinPathM) continue;
     const Pose3 first_from_second = Between(*final[first], *final[second]);
     const double distance_m = first_from_second.translation.norm();
-    const double angle_rad = Angle(first_from_second.rotation);
+    const double angle_rad = AngleOf(first_from_second.rotation);
     const double cost = distance_m + kMetresPerRad * angle_rad;
     if (distance_m > kMaxDistanceM || angle_rad > kMaxAngleRad || cost >= best_cost) continue;
     best_cost = cost;
@@ -141,7 +136,7 @@ std::vector<int> FindJumps(const std::vector<SlamPose>& live, const Trajectory& 
                   *live[static_cast<std::size_t>(steps[i].to)].slam_from_camera);
       const Pose3 difference = Between(Between(*from, *to), live_motion);
       jump |=
-          difference.translation.norm() > kSlamJumpM || Angle(difference.rotation) > kSlamJumpRad;
+          difference.translation.norm() > kSlamJumpM || AngleOf(difference.rotation) > kSlamJumpRad;
     }
     if (jump) jumps.push_back(steps[i].to);
   }

@@ -83,9 +83,7 @@ TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place
   }
   file.damage.RequireMostGood(text);
   if (file.unsorted_stamps > 0) {
-    std::vector<double> stamps_s;
-    for (const StampedPose& pose : file.poses) stamps_s.push_back(pose.stamp_s);
-    file.clock_doubt = DoubtOfSorted(stamps_s, lines, place);
+    file.clock_doubt = DoubtOfSorted(StampsOf(file.poses), lines, place);
   }
   const auto stamp_less = [](const auto& a, const auto& b) { return a.stamp_s < b.stamp_s; };
   const auto stamp_equal = [](const auto& a, const auto& b) { return a.stamp_s == b.stamp_s; };

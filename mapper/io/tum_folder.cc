@@ -9,11 +9,11 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/core/trajectory.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/png.h"
-#include "mapper/io/pose_track.h"
 #include "mapper/io/stamp_order.h"
 #include "mapper/io/trajectory_file.h"
 
