@@ -351,8 +351,10 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   std::optional<MapStart> begin;
   if (prior) begin = BeginAnew(*prior, request, warnings);
   ProgressBar bar("mapping");
-  MappingRun run = MapFrames(*input.source, settings.mapper, input.final_poses,
-                             bar.AsProgress(kFinishingMap), {}, {}, prior);
+  MappingRun run = MapFrames(*input.source, settings.mapper,
+                             {.final_poses = input.final_poses,
+                              .progress = bar.AsProgress(kFinishingMap),
+                              .prior = prior ? &*prior : nullptr});
   run.base_from_laser = settings.sequence.laser.mount.base_from_laser();
   bar.Say("writing the map and the report");
   const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);

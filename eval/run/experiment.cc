@@ -35,7 +35,9 @@ GainOracle OracleOf(const Trajectory& truth) {
 
 MappingRun MapExperiment(FrameSource& source, const ExperimentOptions& completed,
                          const World& world, const SlamOutput& slam, const Progress& progress) {
-  return MapFrames(source, completed.mapper, slam.final, progress, OracleOf(world.trajectory));
+  return MapFrames(
+      source, completed.mapper,
+      {.final_poses = slam.final, .progress = progress, .oracle = OracleOf(world.trajectory)});
 }
 
 ExperimentRun RunExperiment(const ExperimentOptions& given, const RunContext& context) {

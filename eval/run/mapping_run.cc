@@ -163,18 +163,16 @@ std::vector<std::string> FrameRecorder::Warnings() const {
 }
 
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
-                     const Trajectory& final_poses, const Progress& progress,
-                     const GainOracle& oracle, const MatchOracle& match_oracle,
-                     const std::optional<PriorMap>& prior) {
+                     const MappingInputs& inputs) {
   const int count = source.FrameCount();
-  FrameRecorder recorder(options, source.Camera(), count, oracle, match_oracle);
-  if (prior) recorder.StartFrom(*prior);
+  FrameRecorder recorder(options, source.Camera(), count, inputs.oracle, inputs.match_oracle);
+  if (inputs.prior != nullptr) recorder.StartFrom(*inputs.prior);
   int done = 0;
   while (const std::optional<Frame> frame = source.Next()) {
     recorder.Add(*frame);
-    if (progress) progress(++done, count);
+    if (inputs.progress) inputs.progress(++done, count);
   }
-  MappingRun run = recorder.Finish(final_poses);
+  MappingRun run = recorder.Finish(inputs.final_poses);
   const std::vector<std::string> of_source = source.Warnings();
   run.warnings.insert(run.warnings.begin(), of_source.begin(), of_source.end());
   return run;

@@ -75,13 +75,19 @@ std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports);
 // parts.
 std::optional<int> GuessedFrom(const MappingRun& run);
 
-// Maps all frames of a source. `final_poses`: SLAM's own final trajectory, empty if there is none.
-// `oracle` and `match_oracle` as for FrameRecorder. With `prior` the run continues in a finished
-// map.
+// What a sequence is mapped with besides its frames.
+struct MappingInputs {
+  Trajectory final_poses = {};  // SLAM's own final trajectory, empty if there is none
+  Progress progress = {};
+  // As for FrameRecorder.
+  GainOracle oracle = {};
+  MatchOracle match_oracle = {};
+  const PriorMap* prior = nullptr;  // a finished map to continue in, null if there is none
+};
+
+// Maps all frames of a source.
 MappingRun MapFrames(FrameSource& source, const MapperOptions& options,
-                     const Trajectory& final_poses, const Progress& progress,
-                     const GainOracle& oracle = {}, const MatchOracle& match_oracle = {},
-                     const std::optional<PriorMap>& prior = {});
+                     const MappingInputs& inputs);
 
 // Poses as in the run's trajectory files; frames without a pose are absent. Those of a source
 // without a camera are planar poses of the base (x, y, yaw about z, at height 0), as in a laser

@@ -108,8 +108,11 @@ MappingRun RunOne(const Stage& stage, const ExperimentOptions& given, const True
     sensor.emplace(stage.world, options, stage.context.cache_folder);
     source = std::make_unique<SyntheticSource>(*sensor, slam, stage.context.threads);
   }
-  return MapFrames(*source, options.mapper, slam.final, stage.context.progress, OracleOf(path),
-                   match);
+  return MapFrames(*source, options.mapper,
+                   {.final_poses = slam.final,
+                    .progress = stage.context.progress,
+                    .oracle = OracleOf(path),
+                    .match_oracle = match});
 }
 
 std::vector<std::pair<std::string, double>> ColumnsOf(const RunScores& scores) {
