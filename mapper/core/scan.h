@@ -33,7 +33,8 @@ inline Beam Silent(const Beam& beam) { return {.bearing_rad = beam.bearing_rad};
 struct Scan {
   // By increasing bearing; a ready scan given to the mapper may have any order.
   std::vector<Beam> beams;
-  // The range limit the scan was made with; the mapper ignores hits beyond it. 0: unknown.
+  // The range limit the scan was made with; the mapper ignores hits beyond it. 0: unknown,
+  // taken for kUsualReachM.
   double max_range_m = 0.0;
 
   bool operator==(const Scan&) const = default;
@@ -44,7 +45,10 @@ struct Scan {
 constexpr double kSteepestTangent = 11.4;
 // Nearer hits are ignored: many drivers write 0 for no return.
 constexpr float kNearestHitM = 1e-3F;
-// Range limit of a scan that does not state one; no robot's scanner sees farther.
+// Range limit of a scan that does not state one: no planar scanner of a robot sees farther, and two
+// false readings make no map that is too large to draw (kMaxMapCells).
+constexpr double kUsualReachM = 250.0;
+// Range limit of any scan.
 constexpr double kFarthestSeenM = 1000.0;
 // Two full turns, as scanners count bearings from different directions.
 constexpr float kFarthestBearingRad = 4.0F * static_cast<float>(std::numbers::pi);

@@ -6,11 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <utility>
 
 #include "mapper/core/error.h"
 #include "mapper/core/frame.h"
+#include "mapper/core/scan.h"
 #include "mapper/io/number_rows.h"
 
 namespace depthgrid {
@@ -253,6 +255,25 @@ CarmenLine ParseParameter(Tokens& tokens) {
   return CarmenMaximum{*range_m};
 }
 
+// Readings in millimetres would all be taken for no return.
+void RequireMetres(const std::vector<double>& range_m) {
+  constexpr double kBeyondAnyM = 100.0;
+  constexpr double kCodesRatio = 1.05;  // codes for no return are nearer to each other
+  constexpr int kFewest = 20;
+  double least_m = std::numeric_limits<double>::infinity(), most_m = 0.0;
+  int readings = 0;
+  for (const double reading_m : range_m) {
+    if (!(reading_m > 0.0) || !std::isfinite(reading_m)) continue;
+    if (reading_m < kBeyondAnyM) return;
+    least_m = std::min(least_m, reading_m);
+    most_m = std::max(most_m, reading_m);
+    ++readings;
+  }
+  if (readings < kFewest || most_m < kCodesRatio * least_m) return;
+  throw InputError("range_m", fmt::format("is {:g} to {:g}, must be metres: are these millimetres?",
+                                          least_m, most_m));
+}
+
 }  // namespace
 
 CarmenLine ParseCarmenLine(std::string_view line) {
@@ -274,9 +295,16 @@ void RequireSound(const CarmenScan& scan) {
           "must be finite");
   require(std::isfinite(scan.bearing_step_rad), "bearing_step_rad", scan.bearing_step_rad,
           "must be finite");
+  const double last_rad =
+      scan.first_bearing_rad + scan.bearing_step_rad * static_cast<double>(scan.range_m.size());
+  for (const double bearing_rad : {scan.first_bearing_rad, last_rad}) {
+    require(std::abs(bearing_rad) <= kFarthestBearingRad, "bearing", bearing_rad,
+            "must be radians within two turns: are these degrees?");
+  }
   require(scan.bearing_step_rad != 0.0 || scan.range_m.size() < 2 || !scan.states_angles,
           "bearing_step_rad", scan.bearing_step_rad, "must not be, of more than one reading");
   require(scan.max_range_m >= 0.0, "max_range_m", scan.max_range_m, "must be 0 or more");
+  RequireMetres(scan.range_m);
 }
 
 void RequireFieldOfView(double fov_deg) {

@@ -51,9 +51,8 @@ FrameNames CarmenFrames(const std::string& path, const CarmenLogOptions& options
                         const PartOptions& part = {});
 
 // Converts the readings of a log line, or of any laser's driver, to a scan in the laser's axes (as
-// in ROS's LaserScan, +infinity is no return, -infinity and NaN are no data). Throws InputError for
-// bearings that are not finite or all the same, for a maximum that is negative or NaN, and for
-// options out of range.
+// in ROS's LaserScan, +infinity is no return, -infinity and NaN are no data). Throws InputError as
+// RequireSound() does, and for options out of range.
 Scan ScanOf(const CarmenScan& line, const CarmenLogOptions& options);
 
 // Reads the file twice, line by line: here to count its scans, then through Next(); and once more

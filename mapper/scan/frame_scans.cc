@@ -17,7 +17,7 @@ bool KnowsReach(const Scan& scan) {
 }
 
 float ReachOf(const Scan& scan) {
-  return static_cast<float>(KnowsReach(scan) ? scan.max_range_m : kFarthestSeenM);
+  return static_cast<float>(KnowsReach(scan) ? scan.max_range_m : kUsualReachM);
 }
 
 // Copies the valid beams, sorted by bearing, with clear_to limited to the scan's reach.
@@ -28,7 +28,7 @@ void CopySound(const Scan& given, Scan& sound) {
   for (const Beam& beam : given.beams) {
     if (!IsSound(beam, reach_m)) continue;
     // A number that stands for "no return". Taken literally it would clear the bearing up to
-    // kFarthestSeenM, and each map would be a square kilometre.
+    // kUsualReachM.
     if (!KnowsReach(given) && !beam.hit && beam.clear_to_m > reach_m) continue;
     Beam& kept = sound.beams.emplace_back(beam);
     kept.clear_to_m = std::min(beam.clear_to_m, reach_m);

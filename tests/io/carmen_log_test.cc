@@ -119,11 +119,28 @@ TEST(CarmenLog, ADriversMetadataMustBeSound) {
   EXPECT_THROW(ScanOf(spoilt(&CarmenScan::bearing_step_rad, 0.0), {}), InputError);
   EXPECT_THROW(ScanOf(spoilt(&CarmenScan::max_range_m, nan), {}), InputError);
   EXPECT_THROW(ScanOf(spoilt(&CarmenScan::max_range_m, -1.0), {}), InputError);
+  EXPECT_THROW(ScanOf(spoilt(&CarmenScan::first_bearing_rad, -135.0), {}), InputError);
+  EXPECT_THROW(ScanOf(spoilt(&CarmenScan::bearing_step_rad, 45.0), {}), InputError);
   CarmenLogOptions narrow, negative;
   narrow.fov_deg = 0.001;
   EXPECT_THROW(ScanOf(sound, narrow), InputError);
   negative.max_range_m = -1.0;
   EXPECT_THROW(ScanOf(sound, negative), InputError);
+}
+
+// But codes for no return are all about the same, and single numbers say nothing.
+TEST(CarmenLog, ADriversReadingsMustBeMetres) {
+  CarmenScan line;
+  line.bearing_step_rad = 0.01;
+  for (int i = 0; i < 40; ++i) line.range_m.push_back(i % 2 == 0 ? 0.0 : 1500.0 + 10.0 * i);
+  EXPECT_THROW(ScanOf(line, {}), InputError);
+  for (double& range : line.range_m) range *= 1e-3;
+  EXPECT_TRUE(ScanOf(line, {}).beams[1].hit);
+  line.range_m = {150.0, 2000.0};
+  EXPECT_EQ(ScanOf(line, {}).beams.size(), 2U);
+  line.range_m.assign(40, 65535.0);
+  line.range_m[3] = 65533.0;
+  EXPECT_FALSE(ScanOf(line, {}).beams[3].hit);
 }
 
 TEST(CarmenLog, ALaserUpsideDownIsReadFromLeftToRight) {

@@ -266,13 +266,13 @@ TEST(FrameScanner, HitsThatAreNoneAndBearingsOfNoCircleSayNothing) {
 TEST(FrameScanner, NothingIsClearBeyondTheScansReach) {
   const Scan scan{.beams = {{0.0F, 0.0F, 0.0F, 80.0F, false}}, .max_range_m = 6.0};
   EXPECT_EQ(SoundPartOf(scan).beams[0].clear_to_m, 6.0F);
-  // Without a reach nothing beyond 1 km is a distance: drivers' numbers for "nothing came back".
-  const Beam far{0.2F, 0.0F, 0.0F, 1000.0F, false};
+  // Without a reach nothing beyond 250 m is a distance: drivers' numbers for "nothing came back".
+  const Beam far{0.2F, 0.0F, 0.0F, 250.0F, false};
   const Scan unknown{.beams = {{0.0F, 0.0F, 0.0F, 65535.0F, false},
-                               {0.1F, 2e3F, 0.0F, 2e3F, true},
+                               {0.1F, 260.0F, 0.0F, 260.0F, true},
                                far,
                                {0.3F, 5.0F, 0.0F, 1e9F, true}}};
-  const Beam hit{0.3F, 5.0F, 0.0F, 1000.0F, true};
+  const Beam hit{0.3F, 5.0F, 0.0F, 250.0F, true};
   EXPECT_EQ(SoundPartOf(unknown).beams, (std::vector<Beam>{far, hit}));
 }
 
