@@ -36,6 +36,10 @@ bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double tim
 constexpr double kUntimedStepM = 0.5;
 constexpr double kUntimedStepRad = 0.5;
 
+// After a longer time without scans, the motion since the last one does not tell how the laser
+// moves now.
+constexpr double kPauseS = 1.0;
+
 double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
   return (b.odom_from_laser.translation() - a.odom_from_laser.translation()).norm() /
          (b.stamp_s - a.stamp_s);
@@ -79,7 +83,9 @@ class CarmenLogSource : public FrameSource {
     }
     if (faults_.HasScan(InPart(frame.index))) {
       faults_.DropBody(*line);
-      frame.scan = std::make_shared<const Scan>(ScanOfLine(*line, options_));
+      frame.scan = std::make_shared<const Scan>(
+          AtStamp(ScanOfLine(*line, options_), options_.sweep,
+                  options_.upside_down ? SweepOrder::kReversed : SweepOrder::kAsListed, velocity_));
     }
     frame.slam_epoch = epoch_;
     for (const LoopClosure& loop : loops_) {
@@ -262,6 +268,16 @@ class CarmenLogSource : public FrameSource {
     return true;
   }
 
+  // The laser's mean velocity since the last scan, in its axes; zero where a pause came between.
+  Eigen::Vector3d VelocityTo(const CarmenScan& scan) const {
+    const double step_s = scan.stamp_s - last_stamp_s_;
+    if (!odom_from_last_ || step_s > kPauseS) return Eigen::Vector3d::Zero();
+    const Pose2 base_from_laser = options_.mount.base_from_laser();
+    const Pose2 base_from_last = Between(scan.odom_from_laser, *odom_from_last_);
+    const Pose2 laser_from_last = Inverse(base_from_laser) * base_from_last * base_from_laser;
+    return -laser_from_last.vector() / step_s;
+  }
+
   // False for a scan that is not later than the one before and is left out.
   bool GoOnWith(const CarmenScan& scan) {
     const bool is_same = IsSameStamp(scan.stamp_s, last_stamp_s_);
@@ -277,7 +293,9 @@ class CarmenLogSource : public FrameSource {
       return false;
     }
     MoveTo(scan.stamp_s);
-    if (BreaksOff(scan)) ++epoch_;
+    const bool breaks = BreaksOff(scan);
+    epoch_ += breaks ? 1 : 0;
+    velocity_ = breaks ? Eigen::Vector3d::Zero() : VelocityTo(scan);
     last_stamp_s_ = scan.stamp_s;
     odom_from_last_ = scan.odom_from_laser;
     return true;
@@ -333,7 +351,8 @@ class CarmenLogSource : public FrameSource {
   enum class Place { kBeforePart, kInPart, kBehindPart };
   Place place_ = Place::kBeforePart;  // of the scan read last
   std::optional<Pose2> odom_from_last_;
-  LaserFaults faults_;  // of the part
+  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // of the laser at the last scan
+  LaserFaults faults_;                                  // of the part
   int epoch_ = 0;
   double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did
   int earlier_ = 0;              // scans left out, except those with a repeated stamp

@@ -14,6 +14,7 @@
 #include "mapper/io/frame_names.h"
 #include "mapper/io/frame_part.h"
 #include "mapper/io/laser_mount.h"
+#include "mapper/io/laser_sweep.h"
 
 namespace depthgrid {
 
@@ -30,6 +31,9 @@ struct CarmenLogOptions {
   // For logs that state the robot's pose in place of the laser's. Callers of ScanOf() must give
   // their frames the pose odom_from_base * mount.base_from_laser().
   LaserMount mount = {};
+  // For scanners that turn slowly, whose readings differ in time. Not applied by ScanOf(), which
+  // knows no motion: see AtStamp().
+  LaserSweep sweep = {};
   // Nearer readings are "no data": scanners report 0 for "too near" or a fault.
   double min_range_m = 0.1;
   // Drops readings of the robot's own body, which stay the same while it turns (OwnBody).

@@ -105,6 +105,7 @@ void CarmenLogOptions::Visit(OptionsVisitor& v) {
   v.Number("fov_deg", fov_deg, {0.0, 360.0},
            "degrees from the first to the last reading of a FLASER line; 0: a half circle");
   v.Group("mount", mount, "where the laser is on the robot whose poses the log states");
+  v.Group("sweep", sweep, "when a scan's readings are taken");
   v.Flag("upside_down", upside_down,
          "whether the readings go from left to right, as of a laser mounted upside down");
   v.Number("min_range_m", min_range_m, {0.0, 100.0}, "nearer readings are no data");

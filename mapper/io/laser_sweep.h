@@ -1,0 +1,28 @@
+// Undoes what the laser's own motion does to a scan while it is swept (docs/formats.md, "Laser
+// logs").
+#pragma once
+
+#include <Eigen/Core>
+
+#include "mapper/core/options.h"
+#include "mapper/core/scan.h"
+
+namespace depthgrid {
+
+// When the readings of a scan are taken.
+struct LaserSweep {
+  double duration_s = 0.0;   // from the first reading to the last; 0: all at once
+  double stamp_share = 0.0;  // share of it that has passed at the scan's stamp
+
+  void Visit(OptionsVisitor& v);
+};
+
+// Whether a scan's beams are listed in the order in which they were taken.
+enum class SweepOrder { kAsListed, kReversed };
+
+// The beams as they would be from where the laser is at the stamp. Bearings of the result need not
+// increase, and may go beyond a full turn where the laser turns against its sweep. `velocity` at
+// the stamp, in the laser's axes: forward m/s, left m/s, turning rad/s.
+Scan AtStamp(Scan scan, const LaserSweep& sweep, SweepOrder order, const Eigen::Vector3d& velocity);
+
+}  // namespace depthgrid
