@@ -75,6 +75,11 @@ void RequireRunFolder(const std::string& folder) {
   const std::string picture = MapPictureAt(folder);
   if (picture.empty()) throw InputError(folder, "is no run's folder: it has no run.yaml");
   const fs::path around = fs::path(picture).parent_path();
+  if (!fs::exists(around / "run.yaml", error) && fs::exists(around / "scans.bin", error)) {
+    throw InputError((around / "run.yaml").string(),
+                     "is missing: the folder holds a run's scans (scans.bin), not the settings "
+                     "that they were made with");
+  }
   throw InputError(
       picture,
       fs::exists(around / "run.yaml", error)

@@ -260,6 +260,11 @@ TEST_F(ProgramLogs, APictureIsNoMapToGoOnIn) {
   Succeed("map robot.log -o first");
   ExpectRefusal("map robot.log --map first/map.yaml -o out",
                 {"first/map.yaml: is a run's picture, must be the folder that it is in, first\n"});
+  std::filesystem::remove(Path("first/run.yaml"));
+  for (const std::string given : {"first", "first/map.yaml"}) {
+    ExpectRefusal("map robot.log --map " + given + " -o out",
+                  {"depthgrid: first/run.yaml: is missing: the folder holds a run's scans (sc"});
+  }
 }
 
 TEST_F(ProgramLogs, WhereARunBeginsIsFoundWithPosesThatDrift) {
