@@ -68,20 +68,6 @@ std::optional<std::string> DoubtOfStart(const std::string& map, const MapStart& 
                      map, WhyUncertain(start));
 }
 
-// A given start is refined to where the scans fit; smaller changes than these are not reported.
-constexpr double kLittleM = 0.05;
-constexpr double kLittleRad = RadFromDeg(3.0);
-
-std::optional<std::string> DoubtOfMove(const Pose2& given, const Pose2& taken) {
-  const Pose2 move = Between(given, taken);
-  if (move.translation().norm() <= kLittleM && std::abs(move.yaw_rad) <= kLittleRad) return {};
-  return fmt::format(
-      "start {}: the sequence begins {:.2f} m and {:.1f} degrees from there, at {}, where what is "
-      "seen first fits better (--start-within 0 takes the place as it is given)",
-      Numbers(given), move.translation().norm(), std::abs(DegFromRad(move.yaw_rad)),
-      Numbers(taken));
-}
-
 void SayStart(const std::string& map, const PriorMap& prior, const MapStart& start, bool camera) {
   const Pose2& at = start.place.map_from_slam;
   fmt::print("{}: {}; {} frame lies at ({} m, {} m, {} degrees) of it, fit {:.2f}{}, ", map,
@@ -157,17 +143,14 @@ MapStart BeginIn(PriorMap& prior, const MapRequest& request, FrameSource& source
   SayStart(arguments.map, prior, *start, source.Camera().has_value());
   const auto doubt = DoubtOfStart(arguments.map, *start, base_from_laser);
   if (doubt) warnings.push_back(*doubt);
-  if (request.start) {
-    const Pose2 taken = start->map_from_base * Inverse(base_from_laser);
-    const auto moved = DoubtOfMove(*request.start, taken);
-    if (moved) warnings.push_back(*moved);
-  }
   return *std::move(start);
 }
 
+namespace {
+
 // A start in a finished map is uncertain until the scans confirm it.
-std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart& start,
-                                       const MappingRun& run) {
+std::vector<std::string> DoubtsOfFoundPlace(const MapRequest& request, const MapStart& start,
+                                            const MappingRun& run) {
   const std::string& map = request.arguments.map;
   const MapperOptions& options = request.settings.mapper;
   if (options.fusion.TrustsSlamAlone()) return {};
@@ -188,6 +171,31 @@ std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart
       fmt::format("{}: where in it the sequence begins is not known along a direction of {:.0f} "
                   "degrees, it may be {:.1f} m off: nothing that was seen ends along it",
                   map, DegFromRad(unsure->direction_rad), unsure->reach_m)};
+}
+
+// The start that is taken first is where the first views fit; what the whole run says of the first
+// frame is more certain, so a given start is compared with that.
+std::optional<std::string> DoubtOfGivenStart(const MapRequest& request, const MappingRun& run) {
+  if (!request.start || request.settings.start_within_m == 0.0) return {};
+  const auto moved = StartMoved(run, *request.start);
+  if (!moved) return {};
+  return fmt::format(
+      "start {}: the sequence begins {:.2f} m and {:.1f} degrees from there, at {}, where the "
+      "scans "
+      "fit better (--start-within 0 takes the place as it is given)",
+      Numbers(*request.start), moved->move.translation().norm(),
+      std::abs(DegFromRad(moved->move.yaw_rad)), Numbers(moved->found));
+}
+
+}  // namespace
+
+std::vector<std::string> DoubtsOfPlace(const MapRequest& request, const MapStart& start,
+                                       const MappingRun& run) {
+  std::vector<std::string> doubts = DoubtsOfFoundPlace(request, start, run);
+  if (auto moved = DoubtOfGivenStart(request, run)) {
+    doubts.insert(doubts.begin(), *std::move(moved));
+  }
+  return doubts;
 }
 
 std::optional<std::string> DoubtOfHeight(const MapRequest& request, const MappingRun& run) {

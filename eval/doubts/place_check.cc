@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "mapper/core/angle.h"
 #include "mapper/core/counted.h"
+#include "mapper/core/level.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/map_start.h"
 #include "mapper/match/distance_field.h"
@@ -24,6 +26,8 @@ constexpr double kLeastExplained = 0.2;
 constexpr int kStretchFrames = 30;
 // Largest sigma along a line of a match that has seen an end of the line, rather than noise.
 constexpr double kSeenSigmaM = 0.02;
+constexpr double kLittleM = 0.05;
+constexpr double kLittleRad = RadFromDeg(3.0);
 // For directions that a match does not constrain.
 constexpr double kUnseenSigmaM = 100.0;
 
@@ -90,6 +94,18 @@ std::string TextOf(const LostFrames& lost) {
       "lost: in {} of the {} that were placed and see something, hardly anything that is seen lies "
       "on the map; {}",
       lost.lost, Counted(lost.frames, "frame"), why);
+}
+
+std::optional<MovedStart> StartMoved(const MappingRun& run, const Pose2& given) {
+  for (std::size_t i = 0; i < run.reports.size(); ++i) {
+    const auto& map_from_camera = run.result.map_from_camera[i];
+    if (!map_from_camera || run.reports[i].beams == 0) continue;
+    const Pose2 found = BaseOf(*map_from_camera) * Inverse(run.base_from_laser);
+    const Pose2 move = Between(given, found);
+    if (move.translation().norm() <= kLittleM && std::abs(move.yaw_rad) <= kLittleRad) return {};
+    return MovedStart{found, move};
+  }
+  return {};
 }
 
 std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptions& grid) {

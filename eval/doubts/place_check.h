@@ -29,6 +29,16 @@ std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised);
 // The text of a warning about it.
 std::string TextOf(const LostFrames& lost);
 
+// How far from a given start a run begins by its final poses.
+struct MovedStart {
+  Pose2 found;  // of the robot's base at the first frame with a pose and a scan
+  Pose2 move;   // from the given one to it
+};
+
+// `given`: of the robot's base in the map. Empty for differences up to 5 cm and 3 degrees, by which
+// scans refine any start, and where no frame has pose and scan.
+std::optional<MovedStart> StartMoved(const MappingRun& run, const Pose2& given);
+
 // The agreement of all that a run added with the earlier map, if much of it contradicts that map
 // (by the limit for a start, kMuchAgainst). `grid`: as the map is drawn. Empty if nothing was
 // added.

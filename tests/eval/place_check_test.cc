@@ -83,6 +83,27 @@ TEST(FramesLost, SaysThatItComesBack) {
   EXPECT_THAT(TextOf(*FramesLost(run, true)), testing::EndsWith("or it is of another place"));
 }
 
+// What the first views said of the start does not count, nor frames without a scan.
+TEST(StartMoved, IsToldOfTheFinalPoseOfTheFirstFrameThatSeesSomething) {
+  const Pose2 given = {2.0, 1.0, 0.1};
+  MappingRun run = RunOf(3, 0.6);
+  run.base_from_laser = {0.2, 0.0, 0.5};
+  const auto at = [&](const Pose2& base) { return CameraOf(base * run.base_from_laser, 1.0); };
+  run.result.map_from_camera = {at({7.0, 7.0, 0.0}), {}, at({2.03, 1.03, 0.13})};
+  run.reports[0].beams = 0;
+  EXPECT_FALSE(StartMoved(run, given));
+  run.result.map_from_camera[2] = at({2.3, 1.0, 0.1});
+  const auto moved = StartMoved(run, given);
+  ASSERT_TRUE(moved);
+  EXPECT_NEAR(moved->found.x_m, 2.3, 1e-9);
+  EXPECT_NEAR(moved->move.translation().norm(), 0.3, 1e-9);
+  run.result.map_from_camera[2] = at({2.0, 1.0, 0.2});
+  ASSERT_TRUE(StartMoved(run, given));
+  EXPECT_NEAR(StartMoved(run, given)->move.yaw_rad, 0.1, 1e-9);
+  run.result.map_from_camera[2].reset();
+  EXPECT_FALSE(StartMoved(run, given));
+}
+
 // A room seen from its middle at every tenth frame, and then another one.
 MappingRun TwoRooms(double second_width_m) {
   MappingRun run;
