@@ -71,10 +71,13 @@ std::optional<double> TurnScaleDoubt(const MappingRun& run) {
     turn_rad += stretch.larger_turn_rad();
     turns.Add(stretch.slam_turn_rad, stretch.map_turn_rad);
   }
-  if (turn_rad < kLeastScaledTurnRad || turns.first == 0.0) return {};
-  const double scale = turns.product / turns.first;
-  const bool differs = scale < 1.0 / kMostTurnRatio || scale > kMostTurnRatio;
-  return differs ? std::optional(scale) : std::nullopt;
+  if (turn_rad < kLeastScaledTurnRad || turns.product <= 0.0) return {};
+  // Noise in either sequence flattens the line that is fitted over it, so the true ratio lies
+  // between the slope of the map over SLAM and that of SLAM over the map, turned round.
+  const double least = turns.product / turns.first;
+  const double most = turns.second / turns.product;
+  const bool differs = most < 1.0 / kMostTurnRatio || least > kMostTurnRatio;
+  return differs ? std::optional(std::sqrt(least * most)) : std::nullopt;
 }
 
 std::optional<WayFault> WayDoubt(const MappingRun& run) {

@@ -23,7 +23,7 @@ std::optional<Ways> ScaleDoubt(const MappingRun& run);
 
 // The ratio of the map's turns to SLAM's on the same stretches, if it is so far from 1 that
 // headings or the scans' angles must have a wrong scale, such as a wrong field of view of the
-// laser. Empty for less than half a turn.
+// laser, however noisy either is. Empty for less than half a turn.
 std::optional<double> TurnScaleDoubt(const MappingRun& run);
 
 // Why SLAM and the scans move in different directions.

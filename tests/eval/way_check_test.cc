@@ -6,6 +6,7 @@
 
 #include "mapper/core/angle.h"
 #include "mapper/core/level.h"
+#include "mapper/core/rng.h"
 
 namespace depthgrid {
 namespace {
@@ -83,6 +84,25 @@ TEST(WayCheck, TellsTheScaleOfTurns) {
     EXPECT_FALSE(TurnScaleDoubt(OnTheSpot(15, scale))) << scale;  // less than half a turn
   }
   EXPECT_FALSE(TurnScaleDoubt(MappingRun{}));
+}
+
+// Noise in the odometry's headings flattens the slope over them to 0.85, of a right scale too.
+TEST(WayCheck, NoiseOfHeadingsIsNoOtherScale) {
+  const auto noisy = [](double scale) {
+    MappingRun run = OnTheSpot(400, scale);
+    RandomStream random(1, RandomStage::kTest);
+    for (FrameReport& report : run.reports) {
+      const double yaw_rad = BaseOf(*report.slam_from_camera).yaw_rad + 0.12 * random.Normal();
+      report.slam_from_camera = CameraOf({0.0, 0.0, yaw_rad}, 0.0);
+    }
+    return run;
+  };
+  EXPECT_FALSE(TurnScaleDoubt(noisy(1.0)));
+  for (const double scale : {0.5, 2.0}) {
+    const auto told = TurnScaleDoubt(noisy(scale));
+    ASSERT_TRUE(told) << scale;
+    EXPECT_NEAR(*told, scale, 0.2 * scale);
+  }
 }
 
 TEST(WayCheck, TellsNothingOfAShortWay) {
