@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/grid/beam_noise.h"
+
 namespace depthgrid {
 namespace {
 
@@ -22,26 +24,6 @@ std::vector<int> SampleOf(const std::vector<MappedFrame>& frames, std::size_t mo
   std::vector<int> sample;
   for (std::size_t i = 0; i < kept.size(); i += step) sample.push_back(kept[i]);
   return sample;
-}
-
-// Standard deviation of a beam's range as a share of the range. On a flat wall the second
-// difference of three neighbouring ranges is noise alone, of variance (1 + 4 + 1) sigma^2; edges
-// are few, so the median passes over them.
-double NoiseShare(const std::vector<Scan>& scans) {
-  std::vector<double> shares;
-  for (const Scan& scan : scans) {
-    for (std::size_t i = 1; i + 1 < scan.beams.size(); ++i) {
-      const Beam &before = scan.beams[i - 1], &here = scan.beams[i], &after = scan.beams[i + 1];
-      if (!before.hit || !here.hit || !after.hit) continue;
-      const double bend_m = before.range_m - 2.0 * here.range_m + after.range_m;
-      shares.push_back(std::abs(bend_m) / here.range_m);
-    }
-  }
-  if (shares.empty()) return 0.0;
-  const auto middle = shares.begin() + static_cast<std::ptrdiff_t>(shares.size() / 2);
-  std::nth_element(shares.begin(), middle, shares.end());
-  constexpr double kMedianOfNormal = 0.6745;
-  return *middle / (kMedianOfNormal * std::sqrt(6.0));
 }
 
 class Walls {
@@ -91,11 +73,11 @@ class Walls {
 
 // Whether the beam leads through a wall where it says that the way is free.
 bool LeadsThrough(const Beam& beam, const Walls& walls, const Pose2& map_from_base,
-                  double noise_share) {
+                  const BeamNoise& noise) {
   const double cell_m = walls.resolution_m();
   const double yaw_rad = map_from_base.yaw_rad + beam.bearing_rad;
-  const double tolerance_m =
-      std::max(kToleranceCells * cell_m, kToleranceSigmas * noise_share * beam.range_m);
+  const double tolerance_m = std::max(kToleranceCells * cell_m,
+                                      kToleranceSigmas * noise.Share(beam.range_m) * beam.range_m);
   return beam.hit && walls.Bar({map_from_base.x_m, map_from_base.y_m},
                                {std::cos(yaw_rad), std::sin(yaw_rad)}, beam.clear_from_m + cell_m,
                                std::min(beam.clear_to_m - cell_m, beam.range_m - tolerance_m));
@@ -108,14 +90,14 @@ std::vector<CrossedWalls> WallsCrossed(const std::vector<MappedFrame>& frames,
   const std::vector<int> examined = SampleOf(frames, sample.scans);
   std::vector<Scan> scans;
   for (const int i : examined) scans.push_back(*FrameAt(frames, i).obstacles);
-  const double noise_share = NoiseShare(scans);
+  const BeamNoise noise(scans);
   const Walls walls(map);
   std::vector<CrossedWalls> found;
   for (std::size_t k = 0; k < examined.size(); ++k) {
     const std::vector<Beam>& beams = scans[k].beams;
     const Pose2& map_from_base = FrameAt(frames, examined[k]).map_from_base;
     const auto leads_through = [&](std::size_t i) {
-      return LeadsThrough(beams[i], walls, map_from_base, noise_share);
+      return LeadsThrough(beams[i], walls, map_from_base, noise);
     };
     CrossedWalls& counts = found.emplace_back();
     counts.mapped = examined[k];

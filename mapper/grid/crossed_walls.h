@@ -28,8 +28,7 @@ struct CrossedWallsSample {
 };
 
 // Of the kept scans, without those of a prior map, in order. The tolerance is two cells, or three
-// times the beams' noise where that is more; the noise is read from the scans (second differences
-// of neighbouring ranges).
+// times the beams' noise at their range where that is more (BeamNoise).
 std::vector<CrossedWalls> WallsCrossed(const std::vector<MappedFrame>& frames,
                                        const OccupancyMap& map,
                                        const CrossedWallsSample& sample = {});

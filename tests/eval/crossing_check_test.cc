@@ -31,10 +31,10 @@ Scan ScanOfWall(double wall_m, double noise_share = 0.0, int seed = 1) {
 
 // Free from x = 0 on, with walls along y in the cells that these x lie in.
 OccupancyMap MapWithWalls(const std::vector<double>& walls_m) {
-  OccupancyMap map({0.05, {-10, -60}, 80, 120});
+  OccupancyMap map({0.05, {-10, -100}, 120, 200});
   std::fill(map.occupied_prob.begin(), map.occupied_prob.end(), 0.1F);
   for (const double x_m : walls_m) {
-    for (int y = -60; y < 60; ++y) {
+    for (int y = -100; y < 100; ++y) {
       map.occupied_prob[map.geometry.Index({CellIndex(x_m, 0.05), y})] = 0.9F;
     }
   }
@@ -89,6 +89,40 @@ TEST(CrossingCheck, NoiseOfTheBeamsIsNone) {
     }
     EXPECT_LT(ShareOf(ResultOf(scans, MapWithWalls({kWallM}))), 0.005) << noise_share;
   }
+}
+
+// Of a depth image whose neighbouring columns err alike: by a sixteenth of a degree, each eight.
+TEST(CrossingCheck, NoiseThatNeighboursShareIsNone) {
+  std::vector<Scan> scans;
+  for (int seed = 1; seed <= 20; ++seed) {
+    const Scan coarse = ScanOfWall(1.0, 0.05, seed);  // its ranges are 1 / cos and noise
+    Scan scan;
+    scan.max_range_m = 6.0;
+    for (std::size_t i = 0; i < 8 * coarse.beams.size(); ++i) {
+      Beam beam = coarse.beams[i / 8];
+      const double error = beam.range_m * std::cos(beam.bearing_rad);
+      beam.bearing_rad += static_cast<float>(RadFromDeg(0.0625 * static_cast<double>(i % 8)));
+      beam.range_m = beam.clear_to_m =
+          static_cast<float>(kWallM * error / std::cos(beam.bearing_rad));
+      scan.beams.push_back(beam);
+    }
+    scans.push_back(scan);
+  }
+  EXPECT_LT(ShareOf(ResultOf(scans, MapWithWalls({kWallM}))), 0.01);
+}
+
+// A camera errs more the farther it sees, and most of its scans may be made nearby.
+TEST(CrossingCheck, NoiseThatGrowsWithTheDistanceIsNone) {
+  std::vector<Scan> scans;
+  for (int seed = 1; seed <= 20; ++seed) {
+    const bool is_far = seed % 4 == 0;
+    scans.push_back(ScanOfWall(is_far ? 4.02 : 1.02, is_far ? 0.04 : 0.002, seed));
+  }
+  MapperResult result = ResultOf(scans, MapWithWalls({4.02}));
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    if ((i + 1) % 4 != 0) result.mapped[i].map_from_base.x_m = 3.0;
+  }
+  EXPECT_LT(ShareOf(result), 0.002);
 }
 
 TEST(CrossingCheck, SingleWrongReadingsAreNone) {
