@@ -9,6 +9,7 @@
 #include "eval/cli/experiment_argument.h"
 #include "eval/cli/shader_cache.h"
 #include "eval/doubts/truth_check.h"
+#include "eval/doubts/units_check.h"
 #include "eval/files/shell_word.h"
 #include "eval/output/run_folder.h"
 #include "eval/run/experiment.h"
@@ -68,6 +69,7 @@ void RenderNamed(const RenderArguments& arguments) {
   const ExperimentOptions options = Completed(given, world.scene);
   // Made first, so that its errors come now and not at the end.
   const TruthRecord truth = MakeTruth(world, options.mapper, threads);
+  if (const auto doubt = DoubtOfUnits(world.scene)) Warn({*doubt});
   if (const auto doubt = DoubtOfTruth(world, truth, options)) Warn({*doubt});
   const SyntheticSensor sensor(world, options, cache_folder);
   const TumFolderWriter writer(folder.work().string(), {.camera = world.camera});

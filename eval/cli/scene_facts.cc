@@ -9,6 +9,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/doubts/storey_check.h"
+#include "eval/doubts/units_check.h"
 #include "eval/experiment/shipped.h"
 #include "eval/output/output_file.h"
 #include "eval/pictures/scene_plan.h"
@@ -173,6 +174,7 @@ void ShowScene(const ScenesArguments& arguments) {
   const Scene scene = LoadScene(file);
   const std::vector<ScenePath> paths = PathsOf(scene);
   fmt::print("{}", Facts(scene));
+  if (const auto doubt = DoubtOfUnits(scene)) fmt::print("warning: {}\n", *doubt);
   if (!paths.empty()) fmt::print("\n{}", PathTable(paths));
   for (const ScenePath& path : paths) {
     if (!path.refusal.empty()) fmt::print("refused: {}\n", path.refusal);

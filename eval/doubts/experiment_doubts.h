@@ -11,8 +11,8 @@
 
 namespace depthgrid {
 
-// Of its images, its map and its true map (DoubtOfView, DoubtOfCrossing, DoubtOfTruth): one line
-// each.
+// Of its scene, its images, its map and its true map (DoubtOfUnits, DoubtOfView, DoubtOfCrossing,
+// DoubtOfTruth): one line each.
 std::vector<std::string> DoubtsOfExperiment(const World& world, const MappingRun& run,
                                             const TruthRecord& truth,
                                             const ExperimentOptions& options);

@@ -37,6 +37,23 @@ TEST_F(SceneFacts, SaysSizeFloorAndPathsWithWhatIsWrong) {
   EXPECT_THAT(outcome.out, testing::Not(HasSubstr("'short'")));
 }
 
+// A room of 5 x 4 x 2.5 m in centimetres; a site as large, and a tower, are no such thing.
+TEST_F(SceneFacts, AMeshInCentimetresIsAskedForItsUnits) {
+  const auto said_of = [&](const std::string& width, const std::string& height) {
+    const std::string far = "v " + width + " ";
+    Write("room.obj", "v 0 0 0\n" + far + "0 0\n" + far + "400 0\nv 0 400 0\nv 0 0 " + height +
+                          "\nf 1 2 3\nf 1 3 4\nf 1 2 5\n");
+    return Program("scenes ./room.obj").out;
+  };
+  EXPECT_THAT(said_of("500", "250"),
+              HasSubstr("\nwarning: scene room: is 500 x 400 x 250 m large and high: is it in "
+                        "metres? A mesh in centimetres needs scale: 0.01 where"));
+  EXPECT_THAT(said_of("500", "40"), testing::Not(HasSubstr("metres?")));
+  Write("scaled.yaml", "shapes: [{shape: mesh, file: ./room.obj, scale: 0.01}]\n");
+  said_of("500", "250");
+  EXPECT_THAT(Program("scenes ./scaled.yaml").out, testing::Not(HasSubstr("metres?")));
+}
+
 // Each of its frames may be far enough from a wall that it goes through between two of them.
 TEST_F(SceneFacts, PathsAndMoversGoThroughNothingBetweenFrames) {
   Write("thin.yaml",
