@@ -108,7 +108,7 @@ std::optional<MovedStart> StartMoved(const MappingRun& run, const Pose2& given) 
   return {};
 }
 
-std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptions& grid) {
+MapAgreement AgreementWithEarlier(const MappingRun& run, const GridOptions& grid) {
   MapDrawing before(grid);
   for (const MappedFrame& frame : run.result.mapped) {
     if (frame.of_prior_map()) before.Add(frame.frame, *frame.obstacles, frame.map_from_base);
@@ -118,7 +118,6 @@ std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptio
   for (const MappedFrame& frame : run.result.mapped) {
     if (!frame.of_prior_map()) Compare(*frame.obstacles, frame.map_from_base, walls, agreement);
   }
-  if (agreement.share_against() <= kMuchAgainst) return {};
   return agreement;
 }
 

@@ -39,10 +39,9 @@ struct MovedStart {
 // scans refine any start, and where no frame has pose and scan.
 std::optional<MovedStart> StartMoved(const MappingRun& run, const Pose2& given);
 
-// The agreement of all that a run added with the earlier map, if much of it contradicts that map
-// (by the limit for a start, kMuchAgainst). `grid`: as the map is drawn. Empty if nothing was
-// added.
-std::optional<MapAgreement> Contradiction(const MappingRun& run, const GridOptions& grid);
+// How all that a run added agrees with the map as it was, at final poses. `grid`: as the map is
+// drawn. Above kMuchAgainst, the limit for a start, it lies at a wrong place or much has changed.
+MapAgreement AgreementWithEarlier(const MappingRun& run, const GridOptions& grid);
 
 // Whether any frame's match determined its position along this line.
 bool SeesAlong(const MappingRun& run, const UnsureAlong& line);

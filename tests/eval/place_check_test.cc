@@ -126,14 +126,13 @@ MappingRun TwoRooms(double second_width_m) {
   return run;
 }
 
-TEST(Contradiction, IsWhatAnExtendedRunShowsOfTheMapBefore) {
-  EXPECT_FALSE(Contradiction(TwoRooms(4.0), {}));
-  const auto contradiction = Contradiction(TwoRooms(2.5), {});  // walls where it was free
-  ASSERT_TRUE(contradiction);
-  EXPECT_GT(contradiction->share_against(), 0.9);
+TEST(AgreementWithEarlier, IsOfWhatAnExtendedRunShowsOfTheMapBefore) {
+  EXPECT_LT(AgreementWithEarlier(TwoRooms(4.0), {}).share_against(), 0.01);
+  // Walls where it was free.
+  EXPECT_GT(AgreementWithEarlier(TwoRooms(2.5), {}).share_against(), 0.9);
   MappingRun alone = TwoRooms(2.5);
   alone.result.mapped.resize(20);  // nothing was added
-  EXPECT_FALSE(Contradiction(alone, {}));
+  EXPECT_EQ(AgreementWithEarlier(alone, {}).share_against(), 0.0);
 }
 
 TEST(FramesLost, WithoutAPoseOrAReturnNothingIsSaid) {

@@ -309,6 +309,11 @@ TEST_F(ProgramLogs, WhereARunBeginsIsSaid) {
   EXPECT_LT((begin_of("near") - Eigen::Vector3d(3.0, 1.0, 0.0)).norm(), 0.1);
   const std::string wrong = Program("map robot.log --map first --start 3,2,90 -o wrong").err;
   EXPECT_THAT(wrong, HasSubstr("first: at the given start, "));
+  // The map is no longer what it was.
+  EXPECT_THAT(wrong, HasSubstr("wrong: if the sequence was laid onto a wrong place, this map shows "
+                               "two places on top of each other ("));
+  EXPECT_THAT(Program("map robot.log --map first --localise --start 3,2,90 -o as_it_was").err,
+              AllOf(HasSubstr("first: at the given start, "), Not(HasSubstr("two places"))));
   // That it fits better elsewhere is said so that it can be typed.
   const std::size_t at = wrong.find("the sequence begins elsewhere (--start ");
   ASSERT_NE(at, std::string::npos) << wrong;
