@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <set>
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
@@ -20,6 +21,7 @@
 #include "eval/sweep/sweep_engine.h"
 #include "eval/sweep/sweep_folder.h"
 #include "eval/sweep/sweep_progress.h"
+#include "eval/sweep/sweep_reuse.h"
 #include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
 #include "mapper/io/end_task.h"
@@ -86,12 +88,23 @@ std::string DurationText(double seconds) {
   return fmt::format("{:.1f} h", seconds / kHour);
 }
 
-void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t planned, int failed,
-              const SweepContext& context) {
+// Which runs of a plan are to be done here.
+struct WorkHere {
+  std::vector<int> runs;
+  std::size_t planned = 0;  // these and those that are finished
+  int failed = 0;           // tried again
+  int taken = 0;            // taken over from an earlier sweep
+  std::string taken_from;
+};
+
+void Announce(const SweepPlan& plan, const WorkHere& work, const SweepContext& context) {
+  const std::vector<int>& runs = work.runs;
   fmt::print("{}: {}, {}", plan.title, Counted(plan.runs.size(), "run"), plan.size_text);
-  if (planned < plan.runs.size()) fmt::print("; {} of them here", planned);
-  if (runs.size() < planned) fmt::print("; {} done already", planned - runs.size());
-  if (failed > 0) fmt::print("; {} failed and tried again", failed);
+  if (work.planned < plan.runs.size()) fmt::print("; {} of them here", work.planned);
+  const std::size_t done = work.planned - runs.size() - static_cast<std::size_t>(work.taken);
+  if (done > 0) fmt::print("; {} done already", done);
+  if (!work.taken_from.empty()) fmt::print("; {} taken from {}", work.taken, work.taken_from);
+  if (work.failed > 0) fmt::print("; {} failed and tried again", work.failed);
   fmt::print("\n");
   std::fflush(stdout);
   if (runs.empty()) return;
@@ -104,6 +117,24 @@ void Announce(const SweepPlan& plan, const std::vector<int>& runs, std::size_t p
     fmt::print("the first points fail: {}\n", estimate.failure);
   }
   std::fflush(stdout);
+}
+
+// Of a sweep that begins.
+WorkHere WorkAnew(const SweepPlan& plan, const SweepArguments& arguments,
+                  const EarlierSweep& earlier) {
+  WorkHere work;
+  work.taken_from = arguments.reuse;
+  std::set<int> taken;
+  for (const RunOutcome& outcome : earlier.outcomes) taken.insert(outcome.run);
+  for (const PlannedRun& run : RunsOf(plan, ShardOf(arguments.shard))) {
+    ++work.planned;
+    if (taken.contains(run.run)) {
+      ++work.taken;
+    } else {
+      work.runs.push_back(run.run);
+    }
+  }
+  return work;
 }
 
 void Summarise(const SweepResults& results) {
@@ -136,6 +167,7 @@ void RequireMergeAlone(const SweepArguments& arguments) {
   };
   refuse_if(arguments.dry_run, "--dry-run");
   refuse_if(!arguments.shard.empty(), "--shard");
+  refuse_if(!arguments.reuse.empty(), "--reuse");
   refuse_if(!arguments.common.set.empty(), "--set");
   refuse_if(arguments.executor == "slurm", "--executor");
   refuse_if(!arguments.slurm_options.empty(), "--slurm-options");
@@ -168,17 +200,32 @@ void TabulateKnown(const std::string& folder) {
   }
 }
 
+// What `--reuse` names; nothing without it.
+EarlierSweep EarlierOf(const SweepArguments& arguments, const SweepPlan& plan) {
+  if (arguments.reuse.empty()) return {};
+  std::error_code error;  // as long as there is no output folder
+  if (fs::equivalent(arguments.reuse, arguments.common.output, error)) {
+    throw InputError("--reuse " + arguments.reuse,
+                     "is the output's own folder, whose runs stay without it");
+  }
+  return EarlierSweepIn(arguments.reuse, plan);
+}
+
 // Closes the database before it returns.
 SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& plan,
-                              SweepContext context) {
+                              const EarlierSweep& earlier, SweepContext context) {
   const std::string& output = arguments.common.output;
   SweepDatabase database =
       OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force);
   // With `stop`, their results also affected the number of seeds.
   const int failed = plan.stop.Enabled() ? 0 : database.PlanFailedAgain();
+  const int taken = TakeOver(earlier, database);
   NoteWork(database, context.threads);
   if (const auto doubt = DoubtOfBuilds(output, database.Environment())) Warn({*doubt});
-  Announce(plan, database.UnfinishedRuns(), database.PlannedRuns().size(), failed, context);
+  Announce(
+      plan,
+      {database.UnfinishedRuns(), database.PlannedRuns().size(), failed, taken, arguments.reuse},
+      context);
   ProgressBar bar("runs");
   ProgressFile file(output);
   context.progress = [&](int done, int total) {
@@ -200,18 +247,19 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
 
 // Runs the sweep in its folder, which exists and is locked.
 void SweepIn(const std::string& output, const SweepArguments& arguments, const SweepPlan& plan,
-             SweepContext context) {
+             const EarlierSweep& earlier, SweepContext context) {
   // By default rendered depth and scans are cached in the sweep's folder, so that they survive a
   // kill.
   const bool own_cache = context.cache_folder.empty() && !arguments.common.no_cache;
   if (own_cache) context.cache_folder = output + "/cache";
-  const SweepResults results = DoUnfinishedRuns(arguments, plan, context);
+  const SweepResults results = DoUnfinishedRuns(arguments, plan, earlier, context);
   ProgressFile(output).NoteNow({results.planned_runs, results.planned_runs});
   if (own_cache) RemoveSweepCache(context.cache_folder);
   Summarise(results);
 }
 
-void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
+void SweepHere(const SweepArguments& arguments, const SweepPlan& plan,
+               const EarlierSweep& earlier) {
   const std::string& output = arguments.common.output;
   ShardOf(arguments.shard);  // checked before the folder is created
   const SweepFolder folder(output, arguments.common.force);
@@ -219,7 +267,7 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan) {
   context.threads = ThreadsOr(arguments.jobs);
   context.cache_folder = CacheFolder(arguments.common);
   try {
-    SweepIn(output, arguments, plan, context);
+    SweepIn(output, arguments, plan, earlier, context);
   } catch (const std::exception&) {
     // If the folder was removed meanwhile, errors are not the user's mistake.
     if (folder.IsThere()) throw;
@@ -241,6 +289,7 @@ std::string PartCommand(const SweepArguments& arguments, const std::string& swee
   for (const std::string& set : arguments.common.set) command += " --set " + ShellWord(set);
   const std::string cache = CacheFolder(arguments.common);
   if (!cache.empty()) command += " --cache " + ShellWord(absolute(cache));
+  if (!arguments.reuse.empty()) command += " --reuse " + ShellWord(absolute(arguments.reuse));
   if (arguments.common.no_cache) command += " --no-cache";
   return command;
 }
@@ -324,18 +373,17 @@ void Sweep(const SweepArguments& arguments) {
   RequireRooms(plan);
   RequireCacheElsewhere(arguments.common);
   RequireUsableCache(CacheFolder(arguments.common));
+  const EarlierSweep earlier = EarlierOf(arguments, plan);
   Warn(plan.warnings);
   Warn(DoubtsOfPaths(plan, ThreadsOr(arguments.jobs)));
   if (arguments.dry_run) {
     SweepContext context;
     context.threads = ThreadsOr(arguments.jobs);
     context.cache_folder = CacheFolder(arguments.common);
-    std::vector<int> runs;
-    for (const PlannedRun& run : RunsOf(plan, ShardOf(arguments.shard))) runs.push_back(run.run);
-    return Announce(plan, runs, runs.size(), 0, context);
+    return Announce(plan, WorkAnew(plan, arguments, earlier), context);
   }
   if (arguments.executor == "slurm") return SweepOnSlurm(arguments, plan, file);
-  SweepHere(arguments, plan);
+  SweepHere(arguments, plan, earlier);
 }
 
 }  // namespace depthgrid::cli

@@ -9,13 +9,12 @@
 #include <cerrno>
 #include <cmath>
 #include <filesystem>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "eval/output/build_id.h"
 #include "eval/output/result_files.h"
-#include "eval/sweep/sweep_rooms.h"
+#include "eval/sweep/sweep_identity.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 
@@ -26,74 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLockName = "/.lock";
 
-using Environment = std::map<std::string, std::string>;
-
-// Whether a value of an axis is a file name, which is relative to the experiment's folder.
-bool HasFilesOnAxes(const SweepPlan& plan) {
-  const auto& keys = plan.parameter_keys;
-  return std::any_of(keys.begin(), keys.end(), IsFileKey);
-}
-
-// "" is the current folder, as for a file name without a slash.
-std::string AbsoluteFolder(const std::string& folder) {
-  return (folder.empty() ? fs::current_path() : fs::absolute(folder)).string();
-}
-
-Environment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
-  Environment environment = {{"title", plan.title},       {"sweep", plan.sweep_text},
-                             {"again", plan.again_text},  {"experiment", plan.experiment_yaml},
-                             {"given", plan.given_text},  {"version", DEPTHGRID_VERSION},
-                             {"build", BuildId()},        {"instruction_set", DEPTHGRID_ARCH},
-                             {"shard", ShardText(shard)}, {"rooms", RoomsText(plan)}};
-  if (HasFilesOnAxes(plan)) environment["files_from"] = AbsoluteFolder(plan.base_folder);
-  return environment;
-}
-
-const std::vector<std::string> kWhatMakesASweep = {"version", "instruction_set", "experiment",
-                                                   "given",   "sweep",           "rooms"};
-
-// Whether `line` is one of the lines of `text`.
-bool HasLine(const std::string& text, const std::string& line) {
-  return ("\n" + text).find("\n" + line + "\n") != std::string::npos;
-}
-
-// Describes the first line in which two texts differ; the line may be missing in one of them.
-std::string Difference(const std::string& a, const std::string& b) {
-  std::istringstream lines_a(a);
-  std::istringstream lines_b(b);
-  std::string line_a;
-  std::string line_b;
-  while (true) {
-    const bool more_a = static_cast<bool>(std::getline(lines_a, line_a));
-    const bool more_b = static_cast<bool>(std::getline(lines_b, line_b));
-    if (!more_a && !more_b) return "";
-    if (!more_a) line_a.clear();
-    if (!more_b) line_b.clear();
-    if (line_a == line_b) continue;
-    const std::string here = HasLine(a, line_b) ? "" : line_b;
-    const std::string there = HasLine(b, line_a) ? "" : line_a;
-    return fmt::format("'{}' there, '{}' here", there, here);
-  }
-}
-
-// Throws if `there` and `here` differ in one of `respects`.
-void RequireSame(const std::string& place, const Environment& there, const Environment& here,
-                 const std::vector<std::string>& respects, const char* remedy) {
-  for (const std::string& respect : respects) {
-    const auto there_is = there.find(respect), here_is = here.find(respect);
-    // Written by an earlier version.
-    if (there_is == there.end() || here_is == here.end()) continue;
-    if (there_is->second == here_is->second) continue;
-    const std::string what = respect == "sweep"        ? "another sweep"
-                             : respect == "experiment" ? "a sweep of another experiment"
-                             : respect == "given"      ? "a sweep with other keys given"
-                             : respect == "rooms"
-                                 ? "runs in a scene, path or movers that have changed"
-                                 : "a sweep of another " + respect;
-    throw InputError(place, fmt::format("holds {}: {}; {}", what,
-                                        Difference(there_is->second, here_is->second), remedy));
-  }
-}
+using Environment = SweepEnvironment;
 
 // A folder with nothing but an incomplete plan of a killed sweep counts as empty.
 bool IsEmptyFolder(const std::string& folder) {
@@ -165,21 +97,6 @@ void RequireWhole(const std::vector<std::string>& folders, const std::vector<Swe
   }
 }
 
-// The value of `key`, for some a list "A, B"; "unknown" if an earlier version did not write it.
-std::string ListIn(const Environment& environment, const std::string& key) {
-  const auto found = environment.find(key);
-  return found != environment.end() ? found->second : "unknown";
-}
-
-// The entries of both lists, each once, in their order.
-std::string Joined(std::string entries, const std::string& more) {
-  std::istringstream list(more);
-  for (std::string entry; std::getline(list >> std::ws, entry, ',');) {
-    if ((" " + entries + ",").find(" " + entry + ",") == std::string::npos) entries += ", " + entry;
-  }
-  return entries;
-}
-
 // A sweep's finished runs, as far as tables that name their columns in another order are equal.
 struct FinishedRun {
   int point = 0;
@@ -209,7 +126,7 @@ void AddRuns(const SweepResults& results, std::map<int, FinishedRun>& runs) {
 // Whether `whole` is what merging the parts gives, whose environment that is.
 bool IsMergeOf(const SweepResults& whole, const std::vector<SweepResults>& parts,
                const Environment& environment) {
-  std::vector<std::string> respects = kWhatMakesASweep;
+  std::vector<std::string> respects = WhatMakesASweep();
   respects.emplace_back("shard");
   for (const std::string& respect : respects) {
     if (ListIn(whole.environment, respect) != ListIn(environment, respect)) return false;
@@ -227,7 +144,7 @@ Environment JoinedEnvironment(const std::vector<SweepResults>& parts) {
   for (const std::string key : {"build", "jobs"}) {
     environment[key] = ListIn(parts[0].environment, key);
     for (const SweepResults& part : parts) {
-      environment[key] = Joined(environment[key], ListIn(part.environment, key));
+      environment[key] = JoinedLists(environment[key], ListIn(part.environment, key));
     }
   }
   environment["shard"] = ShardText({});
@@ -241,7 +158,7 @@ void NoteWork(SweepDatabase& database, int jobs) {
   const bool is_begun = !database.FinishedRuns().empty();
   const Environment before = database.Environment();
   const auto note = [&](const std::string& key, const std::string& here) {
-    database.Note(key, is_begun ? Joined(ListIn(before, key), here) : here);
+    database.Note(key, is_begun ? JoinedLists(ListIn(before, key), here) : here);
   };
   note("build", BuildId());
   note("jobs", std::to_string(jobs));
@@ -290,10 +207,10 @@ SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan
   const Environment here = EnvironmentOf(plan, shard);
   if (SweepDatabase::Exists(folder)) {
     SweepDatabase database = SweepDatabase::Open(folder);
-    RequireSame(folder, database.Environment(), here, kWhatMakesASweep,
-                "choose another folder, or remove this one");
-    RequireSame(folder, database.Environment(), here, {"shard"},
-                "choose another folder, or remove this one");
+    RequireSameSweep(folder, database.Environment(), here, WhatMakesASweep(),
+                     "choose another folder, or remove this one");
+    RequireSameSweep(folder, database.Environment(), here, {"shard"},
+                     "choose another folder, or remove this one");
     return database;
   }
   if (!force && !IsEmptyFolder(folder)) {
@@ -311,8 +228,8 @@ void MergeSweeps(const std::vector<std::string>& folders, const std::string& tar
   for (const std::string& folder : folders) {
     parts.push_back(ReadSweep(folder));
     const SweepResults& part = parts.back();
-    RequireSame(folder, part.environment, parts[0].environment, kWhatMakesASweep,
-                "parts are of one sweep");
+    RequireSameSweep(folder, part.environment, parts[0].environment, WhatMakesASweep(),
+                     "parts are of one sweep");
     const auto missing = part.planned_runs - static_cast<int>(part.rows());
     if (missing > 0) {
       throw InputError(folder, fmt::format("is not finished: {} of {} runs are missing", missing,
