@@ -197,8 +197,7 @@ std::optional<std::string> DoubtOfGivenStart(const MapRequest& request, const Ma
   if (!moved) return {};
   return fmt::format(
       "start {}: the sequence begins {:.2f} m and {:.1f} degrees from there, at {}, where the "
-      "scans "
-      "fit better (--start-within 0 takes the place as it is given)",
+      "scans fit better (--start-within 0 takes the place as it is given)",
       Numbers(*request.start), moved->move.translation().norm(),
       std::abs(DegFromRad(moved->move.yaw_rad)), Numbers(moved->found));
 }
