@@ -6,6 +6,7 @@
 
 #include "mapper/core/median.h"
 #include "mapper/io/held_motion.h"
+#include "mapper/io/pose_runs.h"
 
 namespace depthgrid {
 namespace {
@@ -76,68 +77,12 @@ class Run {
   std::shared_ptr<const DepthImage> right_;
 };
 
-struct PoseRun {
-  std::size_t begin = 0, end = 0;
-  std::size_t size() const { return end - begin; }
-};
-
-// Frames without a pose are in no run.
-std::vector<PoseRun> RunsOf(const std::vector<std::optional<Pose3>>& slam_from_camera) {
-  std::vector<PoseRun> runs;
-  for (std::size_t i = 0; i < slam_from_camera.size(); ++i) {
-    if (!slam_from_camera[i]) continue;
-    const bool goes_on =
-        !runs.empty() && runs.back().end == i && slam_from_camera[i] == slam_from_camera[i - 1];
-    if (!goes_on) runs.push_back({i, i});
-    runs.back().end = i + 1;
-  }
-  return runs;
-}
-
-// The runs after which the camera moved on at once.
-std::vector<PoseRun> MovingOf(const std::vector<PoseRun>& runs,
-                              const std::vector<std::optional<Pose3>>& slam_from_camera) {
-  constexpr double kMovesM = 0.005, kMovesRad = 0.005;  // chosen: above what a tracker jitters by
-  std::vector<PoseRun> moving;
-  for (std::size_t r = 0; r + 1 < runs.size(); ++r) {
-    if (runs[r].end != runs[r + 1].begin) continue;
-    const Pose3 step =
-        Inverse(*slam_from_camera[runs[r].begin]) * *slam_from_camera[runs[r + 1].begin];
-    if (step.translation.norm() > kMovesM || LogRotation(step.rotation).norm() > kMovesRad) {
-      moving.push_back(runs[r]);
-    }
-  }
-  return moving;
-}
-
-// The longest run of a pose that is only read more often than it is made, as nearly every pose of
-// the moving camera then is: no robot moves in jerks throughout. 1 where that is not so.
-std::size_t LongestRepeated(const std::vector<PoseRun>& moving) {
-  // Chosen, not measured.
-  constexpr std::size_t kLeastRuns = 20;
-  constexpr double kMostShare = 0.8;
-  if (moving.size() < kLeastRuns) return 1;
-  std::vector<double> sizes;
-  for (const PoseRun& run : moving) sizes.push_back(static_cast<double>(run.size()));
-  const auto repeated =
-      std::count_if(sizes.begin(), sizes.end(), [](double size) { return size > 1.0; });
-  const double least = kMostShare * static_cast<double>(moving.size());
-  if (static_cast<double>(repeated) < least) return 1;
-  return 2 * static_cast<std::size_t>(UpperMedian(std::move(sizes)));
-}
-
 }  // namespace
 
 std::vector<bool> HeldFrames(const std::vector<std::optional<Pose3>>& slam_from_camera,
                              std::size_t first, const ImageOfFrame& image) {
-  std::vector<bool> held(slam_from_camera.size(), false);
-  const std::vector<PoseRun> runs = RunsOf(slam_from_camera);
-  const std::vector<PoseRun> moving = MovingOf(runs, slam_from_camera);
-  const std::size_t repeated = LongestRepeated(moving);
-  for (const PoseRun& run : moving) {
-    if (run.size() > repeated) continue;
-    for (std::size_t i = run.begin + 1; i < run.end; ++i) held[i] = true;
-  }
+  const std::vector<PoseRun> runs = PoseRunsOf(slam_from_camera);
+  std::vector<bool> held = FindRepeated(runs, slam_from_camera).held;
   if (runs.size() < 2) return held;
   for (const PoseRun& all : runs) {
     if (all.size() < kLeastFrames || all.end <= first || held[all.begin + 1]) continue;

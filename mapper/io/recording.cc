@@ -12,6 +12,7 @@
 #include "mapper/io/damage.h"
 #include "mapper/io/frozen_images.h"
 #include "mapper/io/held_frames.h"
+#include "mapper/io/held_gaps.h"
 #include "mapper/io/images_ahead.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/pose_track.h"
@@ -138,51 +139,18 @@ class RecordingSource final : public FrameSource {
     for (std::size_t i = 0; i < EndOfPart(); ++i) poses.push_back(poses_[i].slam_from_camera);
     const std::vector<bool> held =
         HeldFrames(poses, first, [&](std::size_t i) { return Read(recording_.images[i]).depth; });
-    std::size_t count = 0, lost = 0;
-    std::optional<std::size_t> first_held;
-    for (std::size_t end = 0; end < held.size(); ++end) {
-      if (!held[end]) continue;
-      const std::size_t from = end;
-      while (end < held.size() && held[end]) ++end;
-      const bool mends = InterpolateOver(from, end);
-      if (end <= first) continue;
-      const std::size_t in_part = end - std::max(from, first);
-      if (!first_held) first_held = std::max(from, first);
-      count += in_part;
-      lost += mends ? 0 : in_part;
+    std::vector<TimedPose> frames;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      frames.push_back({recording_.images[i].stamp_s, poses[i], poses_[i].epoch});
     }
-    if (!first_held) return;
-    recording_.warnings.push_back(
-        fmt::format("{}: one pose is given again and again while the camera moves, first in frame "
-                    "{}: {} interpolated, {} taken for lost",
-                    recording_.name, *first_held, Counted(count - lost, "frame"), lost));
-  }
-  // Interpolates the poses of frames from `from` to before `end`, or else removes them: false.
-  bool InterpolateOver(std::size_t from, std::size_t end) {
-    // Over longer stretches the way is not known, and nobody goes that fast. Chosen, not measured.
-    constexpr double kMostS = 3.0, kMostMps = 2.0, kMostRadps = 2.0;
-    const auto stamp_s = [&](std::size_t i) { return recording_.images[i].stamp_s; };
-    const bool is_between = from > 0 && end < EndOfPart() && poses_[end].slam_from_camera &&
-                            poses_[from - 1].slam_from_camera &&
-                            poses_[from - 1].epoch == poses_[end].epoch;
-    const double gap_s = is_between ? stamp_s(end) - stamp_s(from - 1) : 0.0;
-    bool mends = gap_s > 0.0 && gap_s <= kMostS;
-    if (mends) {
-      const Pose3 step =
-          Inverse(*poses_[from - 1].slam_from_camera) * *poses_[end].slam_from_camera;
-      mends = step.translation.norm() <= kMostMps * gap_s &&
-              LogRotation(step.rotation).norm() <= kMostRadps * gap_s;
-    }
-    for (std::size_t i = from; i < end; ++i) {
-      std::optional<Pose3>& pose = poses_[i].slam_from_camera;
-      if (!mends) {
-        pose.reset();
-        continue;
-      }
-      const double share = (stamp_s(i) - stamp_s(from - 1)) / gap_s;
-      pose = Blend(*poses_[from - 1].slam_from_camera, *poses_[end].slam_from_camera, share);
-    }
-    return mends;
+    const MendedPoses mended = MendHeld(frames, held);
+    for (std::size_t i = 0; i < poses.size(); ++i) poses_[i].slam_from_camera = mended.poses[i];
+    const HeldCount count = CountHeld(mended.gaps, recording_.part);
+    if (!count.first) return;
+    recording_.warnings.push_back(fmt::format(
+        "{}: one pose is given again and again while the camera moves, first in frame {}: {} "
+        "interpolated, {} taken for lost",
+        recording_.name, *count.first, Counted(count.interpolated, "frame"), count.lost));
   }
 
   std::size_t EndOfPart() const { return recording_.part.EndAmong(recording_.images.size()); }
