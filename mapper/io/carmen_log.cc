@@ -73,15 +73,16 @@ class CarmenLogSource : public FrameSource {
 
   std::optional<Frame> Next() override {
     std::optional<CarmenScan> line = NextScan();
-    for (; line && place_ == Place::kBeforePart; line = NextScan()) ++next_index_;
+    while (line && place_ == Place::kBeforePart) line = NextScan();
     if (!line || place_ == Place::kBehindPart) return std::nullopt;
     Frame frame;
-    frame.index = next_index_++;
+    frame.index = static_cast<int>(scans_) - 1;
     frame.stamp_s = line->stamp_s;
-    if (faults_.HasPose(InPart(frame.index))) {
+    line->odom_from_laser = *odom_from_last_;
+    if (faults_.HasPose(scans_ - 1)) {
       frame.slam_from_camera = CameraOf(LaserPoseOf(*line, options_), 0.0);
     }
-    if (faults_.HasScan(InPart(frame.index))) {
+    if (faults_.HasScan(scans_ - 1 - names_.part.begin)) {
       faults_.DropBody(*line);
       frame.scan = std::make_shared<const Scan>(
           AtStamp(ScanOfLine(*line, options_), options_.sweep,
@@ -119,6 +120,7 @@ class CarmenLogSource : public FrameSource {
     while (auto scan = NextScan()) {
       names_.stamps_s.push_back(scan->stamp_s);
       names_.numbers.push_back(lines_of_scans_ - 1);
+      faults_.AddPose(*scan, epoch_);
       if (place_ != Place::kInPart) continue;
       const double no_return_m = ReachOf(*scan, options_).no_return_m;
       doubts.check.Add(*scan, no_return_m, lines_.Number());
@@ -157,7 +159,7 @@ class CarmenLogSource : public FrameSource {
     WarnOfProblems();
     WarnOfClock();
     WarnOfOrder();
-    for (std::string& fault : faults_.Warnings(path_, names_.part.begin)) {
+    for (std::string& fault : faults_.Warnings(path_, names_.part)) {
       warnings_.push_back(std::move(fault));
     }
     for (std::string& doubt : doubts.check.Warnings(path_)) warnings_.push_back(std::move(doubt));
@@ -175,11 +177,6 @@ class CarmenLogSource : public FrameSource {
           fmt::format("{}:{}: {}{}{}", path_, seen.first_line, reason, seen.first_fault,
                       seen.count == 1 ? "" : fmt::format(" ({} such lines)", seen.count)));
     }
-  }
-
-  // Index among the scans of the part.
-  std::size_t InPart(int index) const {
-    return static_cast<std::size_t>(index) - names_.part.begin;
   }
 
   // Call after Survey().
@@ -204,7 +201,7 @@ class CarmenLogSource : public FrameSource {
     lines_.Rewind();
     lines_of_scans_ = 0;
     clock_.Rewind();
-    next_index_ = 0;
+    scans_ = 0;
     last_stamp_s_ = -std::numeric_limits<double>::infinity();
     odom_from_last_.reset();
     epoch_ = 0;
@@ -253,14 +250,14 @@ class CarmenLogSource : public FrameSource {
   }
 
   // Whether the step from the last scan to this one is not a motion.
-  bool BreaksOff(const CarmenScan& scan) {
+  bool BreaksOff(const Pose2& odom_from_laser, double stamp_s) {
     if (!odom_from_last_) return false;
-    if (IsJump(*odom_from_last_, scan.odom_from_laser, scan.stamp_s - last_stamp_s_)) {
+    if (IsJump(*odom_from_last_, odom_from_laser, stamp_s - last_stamp_s_)) {
       Note("the pose jumps by more than 10 m: its motion there is not used");
       return true;
     }
     if (!clock_.IsSetBack()) return false;
-    const Pose2 step = Between(*odom_from_last_, scan.odom_from_laser);
+    const Pose2 step = Between(*odom_from_last_, odom_from_laser);
     if (step.translation().norm() <= kUntimedStepM && std::abs(step.yaw_rad) <= kUntimedStepRad) {
       return false;
     }
@@ -269,11 +266,11 @@ class CarmenLogSource : public FrameSource {
   }
 
   // The laser's mean velocity since the last scan, in its axes; zero where a pause came between.
-  Eigen::Vector3d VelocityTo(const CarmenScan& scan) const {
-    const double step_s = scan.stamp_s - last_stamp_s_;
+  Eigen::Vector3d VelocityTo(const Pose2& odom_from_laser, double stamp_s) const {
+    const double step_s = stamp_s - last_stamp_s_;
     if (!odom_from_last_ || step_s > kPauseS) return Eigen::Vector3d::Zero();
     const Pose2 base_from_laser = options_.mount.base_from_laser();
-    const Pose2 base_from_last = Between(scan.odom_from_laser, *odom_from_last_);
+    const Pose2 base_from_last = Between(odom_from_laser, *odom_from_last_);
     const Pose2 laser_from_last = Inverse(base_from_laser) * base_from_last * base_from_laser;
     return -laser_from_last.vector() / step_s;
   }
@@ -293,11 +290,12 @@ class CarmenLogSource : public FrameSource {
       return false;
     }
     MoveTo(scan.stamp_s);
-    const bool breaks = BreaksOff(scan);
+    const Pose2 odom_from_laser = faults_.PoseOr(scans_++, scan.odom_from_laser);
+    const bool breaks = BreaksOff(odom_from_laser, scan.stamp_s);
     epoch_ += breaks ? 1 : 0;
-    velocity_ = breaks ? Eigen::Vector3d::Zero() : VelocityTo(scan);
+    velocity_ = breaks ? Eigen::Vector3d::Zero() : VelocityTo(odom_from_laser, scan.stamp_s);
     last_stamp_s_ = scan.stamp_s;
-    odom_from_last_ = scan.odom_from_laser;
+    odom_from_last_ = odom_from_laser;
     return true;
   }
 
@@ -340,7 +338,7 @@ class CarmenLogSource : public FrameSource {
   CarmenLogOptions options_;
   PartOptions part_;
   std::vector<LoopClosure> loops_;
-  int next_index_ = 0;
+  std::size_t scans_ = 0;  // those used
   std::int64_t lines_of_scans_ = 0;
   FrameNames names_;
   ScanClock clock_;
@@ -349,10 +347,10 @@ class CarmenLogSource : public FrameSource {
   double last_stamp_s_ = 0.0;
   std::optional<double> first_stamp_s_;
   enum class Place { kBeforePart, kInPart, kBehindPart };
-  Place place_ = Place::kBeforePart;  // of the scan read last
-  std::optional<Pose2> odom_from_last_;
+  Place place_ = Place::kBeforePart;                    // of the scan read last
+  std::optional<Pose2> odom_from_last_;                 // interpolated if it was held
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // of the laser at the last scan
-  LaserFaults faults_;                                  // of the part
+  LaserFaults faults_;
   int epoch_ = 0;
   double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did
   int earlier_ = 0;              // scans left out, except those with a repeated stamp

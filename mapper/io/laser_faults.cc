@@ -10,18 +10,33 @@
 namespace depthgrid {
 namespace {
 
-bool IsAt(const std::vector<bool>& faults, std::size_t scan) {
-  return scan < faults.size() && faults[scan];
+std::string FramesText(std::size_t count) {
+  return count == 1 ? "1 frame is" : fmt::format("{} frames are", count);
 }
 
-void Warn(const std::vector<bool>& faults, std::size_t first_frame, const std::string& fault,
-          const char* mended, std::vector<std::string>& warnings) {
-  const auto count = std::count(faults.begin(), faults.end(), true);
-  if (count == 0) return;
-  const auto first = std::find(faults.begin(), faults.end(), true) - faults.begin();
-  warnings.push_back(fmt::format(
-      "{}, first in frame {}: {} {}", fault, first_frame + static_cast<std::size_t>(first),
-      count == 1 ? "1 frame is" : fmt::format("{} frames are", count), mended));
+// Empty if none is held in the part.
+std::string HeldText(const HeldPoses& poses, const FramePart& part) {
+  const HeldCount count = CountHeld(poses.gaps(), part);
+  if (!count.first) return {};
+  const std::string how_often = poses.times() == 1
+                                    ? "again and again while the scans move"
+                                    : fmt::format("for {} scans in a row", poses.times());
+  std::string mended;
+  if (count.interpolated > 0) mended = FramesText(count.interpolated) + " interpolated";
+  if (count.interpolated > 0 && count.lost > 0) mended += ", ";
+  if (count.lost > 0) mended += FramesText(count.lost) + " taken for lost";
+  return fmt::format("the odometry gives one pose {}, first in frame {}: {}", how_often,
+                     *count.first, mended);
+}
+
+std::string FrozenText(const std::vector<bool>& frozen, const FramePart& part) {
+  const auto count = std::count(frozen.begin(), frozen.end(), true);
+  if (count == 0) return {};
+  const auto first = std::find(frozen.begin(), frozen.end(), true) - frozen.begin();
+  return fmt::format(
+      "the laser gives one scan again and again while the robot moves, first in frame {}: {} "
+      "placed by the odometry alone",
+      part.begin + static_cast<std::size_t>(first), FramesText(static_cast<std::size_t>(count)));
 }
 
 std::string BodyText(const std::vector<OwnBody::Part>& parts, const Bearings& bearings) {
@@ -39,9 +54,12 @@ std::string BodyText(const std::vector<OwnBody::Part>& parts, const Bearings& be
 
 }  // namespace
 
-void LaserFaults::Add(const CarmenScan& line) {
-  held_.Add(line.odom_from_laser, line.range_m, options_.min_range_m,
+void LaserFaults::AddPose(const CarmenScan& line, int epoch) {
+  held_.Add({line.stamp_s, line.odom_from_laser, epoch}, line.range_m, options_.min_range_m,
             ReachOf(line, options_).no_return_m);
+}
+
+void LaserFaults::Add(const CarmenScan& line) {
   frozen_.Add(line.stamp_s, LaserPoseOf(line, options_), line.range_m,
               [&] { return ScanOfLine(line, options_); });
   if (!options_.drop_body) return;
@@ -49,20 +67,21 @@ void LaserFaults::Add(const CarmenScan& line) {
   body_.Add(line, options_.min_range_m);
 }
 
-void LaserFaults::Find() { body_.Find(); }
+void LaserFaults::Find() {
+  held_.Mend();
+  body_.Find();
+}
 
-bool LaserFaults::HasPose(std::size_t scan) const { return !IsAt(held_.held(), scan); }
-bool LaserFaults::HasScan(std::size_t scan) const { return !IsAt(frozen_.frozen(), scan); }
+bool LaserFaults::HasScan(std::size_t scan) const {
+  return scan >= frozen_.frozen().size() || !frozen_.frozen()[scan];
+}
 
 std::vector<std::string> LaserFaults::Warnings(const std::string& path,
-                                               std::size_t first_frame) const {
+                                               const FramePart& part) const {
   std::vector<std::string> warnings;
-  Warn(held_.held(), first_frame,
-       path + ": the odometry gives one pose again and again while the scans move",
-       "taken for lost", warnings);
-  Warn(frozen_.frozen(), first_frame,
-       path + ": the laser gives one scan again and again while the robot moves",
-       "placed by the odometry alone", warnings);
+  for (const std::string& text : {HeldText(held_, part), FrozenText(frozen_.frozen(), part)}) {
+    if (!text.empty()) warnings.push_back(path + ": " + text);
+  }
   if (!body_.parts().empty()) {
     warnings.push_back(fmt::format(
         "{}: readings stay the same while the robot turns ({}): taken for parts of the robot and "

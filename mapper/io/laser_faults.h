@@ -18,16 +18,20 @@ class LaserFaults {
  public:
   explicit LaserFaults(const CarmenLogOptions& options) : options_(options) {}
 
-  // Add the scans of the log, or of its part, in order, then call Find().
+  // Add the poses of all scans of the log and those scans that are of the part in order, then call
+  // Find().
+  void AddPose(const CarmenScan& line, int epoch);
   void Add(const CarmenScan& line);
   void Find();
 
+  // The pose of a scan of the log, whether its line or what it was interpolated from states it, and
+  // whether it is not known, as it was held.
+  Pose2 PoseOr(std::size_t scan, const Pose2& logged) const { return held_.PoseOr(scan, logged); }
+  bool HasPose(std::size_t scan) const { return !held_.IsLost(scan); }
   // `scan` is the index in the order of adding.
-  bool HasPose(std::size_t scan) const;  // false: the pose was held
   bool HasScan(std::size_t scan) const;  // false: the scan was frozen
   void DropBody(CarmenScan& line) const { body_.Drop(line); }
-  // `first_frame` is the frame of the first scan added.
-  std::vector<std::string> Warnings(const std::string& path, std::size_t first_frame) const;
+  std::vector<std::string> Warnings(const std::string& path, const FramePart& part) const;
 
  private:
   CarmenLogOptions options_;
