@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 namespace depthgrid {
 namespace {
@@ -10,6 +12,10 @@ namespace {
 constexpr int kBearingsOfNothing = 4;
 // The end's depth is the greatest of this many beams, as noise makes beams short.
 constexpr int kBeamsOfEnd = 3;
+
+// Measured: docs/tried.md, "Where a depth camera's reach ends".
+constexpr std::size_t kBeamsAround = 10;
+constexpr double kSigmasFromReach = 2.5;
 
 // The scan's beams in either order, so that both ends are treated alike.
 class BeamsFrom {
@@ -57,9 +63,48 @@ void DropCutEnd(const BeamsFrom& beams, int last, float width_m, double farthest
   for (int k = 0; k < dropped; ++k) beams[last - k].hit = false;
 }
 
+// The mean range around beam `i` of what lies within the window's width of it. That of one beam
+// would not do: of those near the reach, the ones that noise made short would be left.
+float RangeAround(const std::vector<Beam>& beams, std::size_t i, float width_m) {
+  const float here_m = beams[i].range_m;
+  float sum_m = 0.0F;
+  int count = 0;
+  const std::size_t end = std::min(i + kBeamsAround + 1, beams.size());
+  for (std::size_t k = i - std::min(i, kBeamsAround); k < end; ++k) {
+    const float range_m = std::abs(beams[k].range_m);
+    if (!beams[k].hit || std::abs(range_m - here_m) > width_m) continue;
+    sum_m += range_m;
+    ++count;
+  }
+  return sum_m / static_cast<float>(count);
+}
+
+// Drops what lies within noise of both reaches, the scan's and the camera's, beyond which no image
+// showed anything: the samples that noise would have made longer are missing.
+void DropAtReach(const NoiseWindow& window, double farthest_m, Scan& scan) {
+  const double reach_m = farthest_m + NoiseWindow::kClassM;
+  std::vector<Beam>& beams = scan.beams;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (!beams[i].hit) continue;
+    const float width_m = window.At(beams[i].range_m);
+    if (beams[i].range_m + width_m < scan.max_range_m) continue;
+    const float range_m = RangeAround(beams, i, width_m);
+    const double depth_m = range_m * std::cos(beams[i].bearing_rad);
+    const double noise_m = kSigmasFromReach * window.SigmaM(depth_m);
+    const bool is_cut = range_m + noise_m > scan.max_range_m && depth_m + noise_m > reach_m;
+    if (is_cut) beams[i].range_m = -beams[i].range_m;  // until all are found
+  }
+  for (Beam& beam : beams) {
+    if (beam.range_m >= 0.0F) continue;
+    beam.hit = false;
+    beam.range_m = -beam.range_m;
+  }
+}
+
 }  // namespace
 
 void DropCutEnds(const NoiseWindow& window, double farthest_m, Scan& scan) {
+  DropAtReach(window, farthest_m, scan);
   for (const bool backwards : {false, true}) {
     const BeamsFrom beams(scan, backwards);
     for (int i = 0; i < beams.size(); ++i) {

@@ -12,7 +12,7 @@ namespace depthgrid {
 // bend, and the bend moves with the camera. Hits within three sigmas of the end's depth are
 // removed, unless they are half of the surface or more. `scan` is a level slice, `farthest_m` the
 // largest NoiseWindow::farthest_m() so far. Surfaces that end at the scan's own max_range_m are
-// left as they are.
+// left as they are if the camera sees farther; else hits within 2.5 sigmas of both are removed.
 void DropCutEnds(const NoiseWindow& window, double farthest_m, Scan& scan);
 
 }  // namespace depthgrid

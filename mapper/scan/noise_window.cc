@@ -113,7 +113,9 @@ void NoiseWindow::At(std::span<const float> ranges_m, float* __restrict widths_m
     const auto at = static_cast<std::size_t>(below);
     const double sigma_m =
         z_m * z_m * ((1.0 - share) * inverse_sigma_[at] + share * inverse_sigma_[at + 1]);
-    widths_m[i] = static_cast<float>(clamped(kWindowSigmas * sigma_m, kMinWindowM, kMaxWindowM));
+    const double width_m = clamped(kWindowSigmas * sigma_m, kMinWindowM, kMaxWindowM);
+    const double least_m = kLeastSigmas * sigma_m;
+    widths_m[i] = static_cast<float>(width_m < least_m ? least_m : width_m);
   }
 }
 

@@ -24,32 +24,36 @@ class NoiseWindow {
     *this = NoiseWindow(image, memory);
   }
   // The same with memory kept from frame to frame.
-  static constexpr int kClasses = 16;
+  static constexpr int kClasses = 32;
   using Memory = std::array<std::vector<float>, kClasses>;
   NoiseWindow(const DepthImage& image, Memory& differences);
 
   static constexpr double kWindowSigmas = 6.0;
-  // Wider than this, the window would join a chair with the wall behind it.
+  // Wider than this, the window would join a chair with the wall behind it. But it is never
+  // narrower than the least number of sigmas: the mean would stay near the smallest sample.
   static constexpr double kMaxWindowM = 0.4;
+  static constexpr double kLeastSigmas = 5.0;
   // One standard deviation as a share of the window.
   static constexpr float kSigmaShare = static_cast<float>(1.0 / kWindowSigmas);
 
   // Width of the window at a range.
   float At(float range_m) const {
-    return static_cast<float>(
-        std::clamp(kWindowSigmas * SigmaM(range_m), kMinWindowM, kMaxWindowM));
+    const double sigma_m = SigmaM(range_m);
+    return static_cast<float>(std::max(
+        std::clamp(kWindowSigmas * sigma_m, kMinWindowM, kMaxWindowM), kLeastSigmas * sigma_m));
   }
 
   // The same for many ranges.
   void At(std::span<const float> ranges_m, float* widths_m) const;
 
   // The mean over a window lies nearer to the surface than the window's centre: of one six sigma
-  // wide .03 of the way is left. Where sigma is so large that the window is capped, and so
-  // narrower, w sigma, each mean leaves w phi(w/2) / (2 Phi(w/2) - 1) of it (.37 of 3.3 sigma, .71
-  // of 2), seven of the latter a tenth.
+  // wide .03 of the way is left, of w sigma w phi(w/2) / (2 Phi(w/2) - 1): .09 of 5. More where the
+  // samples are few, as in the distance, where sigma is so large that the window is capped.
   static constexpr int kMeansOfCapped = 7;
   static bool IsCapped(float width_m) { return width_m >= static_cast<float>(kMaxWindowM); }
   static int MeansOf(float width_m) { return IsCapped(width_m) ? kMeansOfCapped : 1; }
+
+  static constexpr double kClassM = 0.5;  // classes of depth are this wide, from 0
 
   // Lower edge of the farthest half-metre class of depth with enough samples (without depths of 32
   // m and more, which no depth camera measures); 0 if there is none.
@@ -66,7 +70,6 @@ class NoiseWindow {
   }
 
  private:
-  static constexpr double kClassM = 0.5;  // classes of depth are this wide, from 0
   static constexpr double kMinWindowM = 0.01;
 
   std::array<double, kClasses> inverse_sigma_{};  // of 1/z, 1/m

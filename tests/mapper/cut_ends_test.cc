@@ -36,9 +36,11 @@ DepthImage Seen(const AnalyticRoom& room, const PinholeCamera& camera, const Pos
   return image;
 }
 
-Scan SliceOf(const DepthImage& image, const PinholeCamera& camera, const Pose3& pose, bool drop) {
+Scan SliceOf(const DepthImage& image, const PinholeCamera& camera, const Pose3& pose, bool drop,
+             double max_range_m = 6.0) {
   ScanOptions options;
   options.drop_cut_ends = drop;
+  options.max_range_m = max_range_m;
   FrameScanner scanner(camera, options);
   Frame frame;
   frame.depth = std::make_shared<const DepthImage>(image);
@@ -122,6 +124,54 @@ TEST(CutEnds, AWallFaceOnIsKept) {
   const Scan scan = SliceOf(image, camera, pose, true);
   EXPECT_GT(Hits(scan), 200);
   EXPECT_EQ(scan, SliceOf(image, camera, pose, false));
+}
+
+// A stereo camera's image of a wall across the view, at a depth at which its noise is a thirtieth.
+DepthImage FarWall(double wall_m, double reach_m, RandomStream& random) {
+  const PinholeCamera camera;
+  AnalyticRoom room;
+  room.walls = {{-30.0, -30.0, 0.0}, {wall_m, 30.0, 12.0}};
+  DepthImage image = room.Render(camera, TiltedCamera({}, kCameraHeightM, 0.0, 0.0));
+  constexpr double kInverseSigma = 1.0 / 270.0;  // D435: Ahn 2019
+  for (float& z_m : image.z_m) {
+    z_m = static_cast<float>(1.0 / (1.0 / z_m + kInverseSigma * random.Normal()));
+    if (z_m > static_cast<float>(reach_m)) z_m = kInvalidDepth;
+  }
+  return image;
+}
+
+// How far the hits lie before the wall in the mean.
+double NearerM(const Scan& scan, double wall_m) {
+  double sum_m = 0.0;
+  for (const Beam& beam : scan.beams) {
+    if (beam.hit) sum_m += wall_m - beam.range_m * std::cos(beam.bearing_rad);
+  }
+  return sum_m / Hits(scan);
+}
+
+// The window is narrower than its six sigmas there.
+TEST(NoiseWindow, AFarWallIsNotMetAtItsNearestSamples) {
+  RandomStream random(5, RandomStage::kTest);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, 0.0, 0.0);
+  for (const double wall_m : {6.0, 9.0, 12.0}) {
+    const Scan scan = SliceOf(FarWall(wall_m, 100.0, random), {}, pose, true, 20.0);
+    EXPECT_GT(Hits(scan), 500);
+    EXPECT_NEAR(NearerM(scan, wall_m), 0.0, 0.005 * wall_m) << wall_m;
+  }
+}
+
+// Of the wall at the end of what both the camera and the scan reach only what is too near is left.
+TEST(CutEnds, AWallAtTheReachOfCameraAndScanIsNotMatched) {
+  RandomStream random(6, RandomStage::kTest);
+  const Pose3 pose = TiltedCamera({}, kCameraHeightM, 0.0, 0.0);
+  const DepthImage at_reach = FarWall(9.9, 10.0, random);
+  const Scan kept = SliceOf(at_reach, {}, pose, false, 10.0);
+  EXPECT_GT(Hits(kept), 100);
+  EXPECT_GT(NearerM(kept, 9.9), 0.15);
+  EXPECT_LT(Hits(SliceOf(at_reach, {}, pose, true, 10.0)), Hits(kept) / 20);
+  // A camera that sees farther has samples on both sides of it, and a wall well before it has too.
+  EXPECT_GT(Hits(SliceOf(FarWall(9.9, 100.0, random), {}, pose, true, 10.0)), 100);
+  EXPECT_GT(Hits(SliceOf(FarWall(8.5, 10.0, random), {}, pose, true, 10.0)), 500);
 }
 
 // The wall is seen beyond a patch that was not measured: no reach ends it there.
