@@ -218,14 +218,18 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
   SweepDatabase database =
       OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force);
   // With `stop`, their results also affected the number of seeds.
-  const int failed = plan.stop.Enabled() ? 0 : database.PlanFailedAgain();
+  const std::vector<int> never_done = database.UnfinishedRuns();
+  if (!plan.stop.Enabled()) database.PlanFailedAgain();
   const int taken = TakeOver(earlier, database);
+  const std::vector<int> to_do = database.UnfinishedRuns();
+  const auto failed = std::count_if(to_do.begin(), to_do.end(), [&](int run) {
+    return !std::binary_search(never_done.begin(), never_done.end(), run);
+  });
   NoteWork(database, context.threads);
   if (const auto doubt = DoubtOfBuilds(output, database.Environment())) Warn({*doubt});
-  Announce(
-      plan,
-      {database.UnfinishedRuns(), database.PlannedRuns().size(), failed, taken, arguments.reuse},
-      context);
+  Announce(plan,
+           {to_do, database.PlannedRuns().size(), static_cast<int>(failed), taken, arguments.reuse},
+           context);
   ProgressBar bar("runs");
   ProgressFile file(output);
   context.progress = [&](int done, int total) {

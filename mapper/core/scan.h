@@ -48,7 +48,7 @@ constexpr float kNearestHitM = 1e-3F;
 // Range limit of a scan that does not state one: no planar scanner of a robot sees farther, and two
 // false readings make no map that is too large to draw (kMaxMapCells).
 constexpr double kUsualReachM = 250.0;
-// Range limit of any scan.
+// No distance of a scan. A stated limit of this or more is taken for none.
 constexpr double kFarthestSeenM = 1000.0;
 // Two full turns, as scanners count bearings from different directions.
 constexpr float kFarthestBearingRad = 4.0F * static_cast<float>(std::numbers::pi);

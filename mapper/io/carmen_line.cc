@@ -269,7 +269,7 @@ void RequireMetres(const std::vector<double>& range_m) {
     most_m = std::max(most_m, reading_m);
     ++readings;
   }
-  if (readings < kFewest || most_m < kCodesRatio * least_m) return;
+  if (readings < kFewest || most_m <= kUsualReachM || most_m < kCodesRatio * least_m) return;
   throw InputError("range_m", fmt::format("is {:g} to {:g}, must be metres: are these millimetres?",
                                           least_m, most_m));
 }

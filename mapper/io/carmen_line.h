@@ -36,7 +36,8 @@ struct Bearings {
 
 // For scans from a driver: throws InputError for bearings that are not finite, all the same or
 // beyond two turns (degrees), for a maximum that is negative or NaN, and for readings of which none
-// is below 100 m (millimetres), unless they are few or hardly differ (codes for no return).
+// is below 100 m (millimetres), unless they are few, hardly differ (codes for no return) or all
+// lie within kUsualReachM.
 void RequireSound(const CarmenScan& scan);
 // Throws SettingError for an invalid CarmenLogOptions::fov_deg.
 void RequireFieldOfView(double fov_deg);

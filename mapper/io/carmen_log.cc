@@ -36,10 +36,6 @@ bool IsJump(const Pose2& odom_from_last, const Pose2& odom_from_next, double tim
 constexpr double kUntimedStepM = 0.5;
 constexpr double kUntimedStepRad = 0.5;
 
-// After a longer time without scans, the motion since the last one does not tell how the laser
-// moves now.
-constexpr double kPauseS = 1.0;
-
 double SpeedMps(const CarmenScan& a, const CarmenScan& b) {
   return (b.odom_from_laser.translation() - a.odom_from_laser.translation()).norm() /
          (b.stamp_s - a.stamp_s);
@@ -79,14 +75,19 @@ class CarmenLogSource : public FrameSource {
     frame.index = static_cast<int>(scans_) - 1;
     frame.stamp_s = line->stamp_s;
     line->odom_from_laser = *odom_from_last_;
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
     if (faults_.HasPose(scans_ - 1)) {
-      frame.slam_from_camera = CameraOf(LaserPoseOf(*line, options_), 0.0);
+      const Pose2 odom_from_laser = LaserPoseOf(*line, options_);
+      frame.slam_from_camera = CameraOf(odom_from_laser, 0.0);
+      velocity = velocity_.To(frame.stamp_s, odom_from_laser, epoch_);
+    } else {
+      velocity_.Lose();
     }
     if (faults_.HasScan(scans_ - 1 - names_.part.begin)) {
       faults_.DropBody(*line);
       frame.scan = std::make_shared<const Scan>(
           AtStamp(ScanOfLine(*line, options_), options_.sweep,
-                  options_.upside_down ? SweepOrder::kReversed : SweepOrder::kAsListed, velocity_));
+                  options_.upside_down ? SweepOrder::kReversed : SweepOrder::kAsListed, velocity));
     }
     frame.slam_epoch = epoch_;
     for (const LoopClosure& loop : loops_) {
@@ -204,6 +205,7 @@ class CarmenLogSource : public FrameSource {
     scans_ = 0;
     last_stamp_s_ = -std::numeric_limits<double>::infinity();
     odom_from_last_.reset();
+    velocity_.Lose();
     epoch_ = 0;
     front_max_m_ = 0.0;
     first_stamp_s_.reset();
@@ -265,16 +267,6 @@ class CarmenLogSource : public FrameSource {
     return true;
   }
 
-  // The laser's mean velocity since the last scan, in its axes; zero where a pause came between.
-  Eigen::Vector3d VelocityTo(const Pose2& odom_from_laser, double stamp_s) const {
-    const double step_s = stamp_s - last_stamp_s_;
-    if (!odom_from_last_ || step_s > kPauseS) return Eigen::Vector3d::Zero();
-    const Pose2 base_from_laser = options_.mount.base_from_laser();
-    const Pose2 base_from_last = Between(odom_from_laser, *odom_from_last_);
-    const Pose2 laser_from_last = Inverse(base_from_laser) * base_from_last * base_from_laser;
-    return -laser_from_last.vector() / step_s;
-  }
-
   // False for a scan that is not later than the one before and is left out.
   bool GoOnWith(const CarmenScan& scan) {
     const bool is_same = IsSameStamp(scan.stamp_s, last_stamp_s_);
@@ -291,9 +283,7 @@ class CarmenLogSource : public FrameSource {
     }
     MoveTo(scan.stamp_s);
     const Pose2 odom_from_laser = faults_.PoseOr(scans_++, scan.odom_from_laser);
-    const bool breaks = BreaksOff(odom_from_laser, scan.stamp_s);
-    epoch_ += breaks ? 1 : 0;
-    velocity_ = breaks ? Eigen::Vector3d::Zero() : VelocityTo(odom_from_laser, scan.stamp_s);
+    if (BreaksOff(odom_from_laser, scan.stamp_s)) ++epoch_;
     last_stamp_s_ = scan.stamp_s;
     odom_from_last_ = odom_from_laser;
     return true;
@@ -347,9 +337,9 @@ class CarmenLogSource : public FrameSource {
   double last_stamp_s_ = 0.0;
   std::optional<double> first_stamp_s_;
   enum class Place { kBeforePart, kInPart, kBehindPart };
-  Place place_ = Place::kBeforePart;                    // of the scan read last
-  std::optional<Pose2> odom_from_last_;                 // interpolated if it was held
-  Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();  // of the laser at the last scan
+  Place place_ = Place::kBeforePart;     // of the scan read last
+  std::optional<Pose2> odom_from_last_;  // interpolated if it was held
+  LaserVelocity velocity_;
   LaserFaults faults_;
   int epoch_ = 0;
   double front_max_m_ = 0.0;     // as PARAM states it, 0 when none did

@@ -80,14 +80,16 @@ class Run {
 }  // namespace
 
 std::vector<bool> HeldFrames(const std::vector<std::optional<Pose3>>& slam_from_camera,
-                             std::size_t first, const ImageOfFrame& image) {
+                             std::size_t first, std::size_t end, const ImageOfFrame& image) {
   const std::vector<PoseRun> runs = PoseRunsOf(slam_from_camera);
   std::vector<bool> held = FindRepeated(runs, slam_from_camera).held;
   if (runs.size() < 2) return held;
-  for (const PoseRun& all : runs) {
-    if (all.size() < kLeastFrames || all.end <= first || held[all.begin + 1]) continue;
-    const Run run(all.begin, all.end, &all == &runs.front(), image);
-    for (std::size_t k = run.CountRight(); k < all.size(); ++k) held[run.At(k)] = true;
+  for (const PoseRun& whole : runs) {
+    const PoseRun in_part{whole.begin, std::min(whole.end, end)};
+    if (in_part.end < in_part.begin + kLeastFrames || in_part.end <= first) continue;
+    if (held[in_part.begin + 1]) continue;
+    const Run run(in_part.begin, in_part.end, &whole == &runs.front(), image);
+    for (std::size_t k = run.CountRight(); k < in_part.size(); ++k) held[run.At(k)] = true;
   }
   return held;
 }

@@ -21,9 +21,10 @@ using ImageOfFrame = std::function<std::shared_ptr<const DepthImage>(std::size_t
 // changes since the first of them, or until the last of them where no pose differed before: those
 // from half that change on. Somebody who fills the view of a standing camera has the same effect.
 // Or nearly every pose of the moving camera is given more than once: all but the first frame of
-// each. Nothing is held where all poses are equal. Images are asked for, several times and none
-// before frame `first` but those of its pose, only of frames with equal poses.
+// each. Nothing is held where all poses are equal. Images are asked for, several times, none from
+// frame `end` on and none before frame `first` but those of its pose, only of frames with equal
+// poses.
 std::vector<bool> HeldFrames(const std::vector<std::optional<Pose3>>& slam_from_camera,
-                             std::size_t first, const ImageOfFrame& image);
+                             std::size_t first, std::size_t end, const ImageOfFrame& image);
 
 }  // namespace depthgrid

@@ -2,15 +2,21 @@
 
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "mapper/core/angle.h"
-#include "mapper/core/pose2.h"
 
 namespace depthgrid {
 namespace {
 
 // A slower scanner is none that a robot moves with.
 constexpr double kLongestSweepS = 10.0;
+
+// Chosen: after a longer time the motion does not tell how the laser moves now, and what is faster
+// is a correction of the odometry or an error of the clock.
+constexpr double kPauseS = 1.0;
+constexpr double kFastestMps = 5.0;
+constexpr double kFastestRadps = 2.0 * kPi;
 
 Beam Moved(const Beam& beam, const Pose2& stamp_from_beam) {
   Beam moved = beam;
@@ -35,6 +41,18 @@ void LaserSweep::Visit(OptionsVisitor& v) {
            "all at once");
   v.Number("stamp_share", stamp_share, {0.0, 1.0},
            "which reading the stamp is of: 0 the first, 1 the last, in between a share");
+}
+
+Eigen::Vector3d LaserVelocity::To(double stamp_s, const Pose2& odom_from_laser, int epoch) {
+  const std::optional<Seen> before = std::exchange(before_, Seen{stamp_s, odom_from_laser, epoch});
+  if (!before || before->epoch != epoch) return Eigen::Vector3d::Zero();
+  const double step_s = stamp_s - before->stamp_s;
+  if (!(step_s > 0.0) || step_s > kPauseS) return Eigen::Vector3d::Zero();
+  const Pose2 laser_from_before = Between(odom_from_laser, before->odom_from_laser);
+  const Eigen::Vector3d velocity = -laser_from_before.vector() / step_s;
+  const bool is_possible =
+      velocity.head<2>().norm() <= kFastestMps && std::abs(velocity.z()) <= kFastestRadps;
+  return is_possible ? velocity : Eigen::Vector3d::Zero();
 }
 
 Scan AtStamp(Scan scan, const LaserSweep& sweep, SweepOrder order,

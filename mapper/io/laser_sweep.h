@@ -3,8 +3,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "mapper/core/options.h"
+#include "mapper/core/pose2.h"
 #include "mapper/core/scan.h"
 
 namespace depthgrid {
@@ -15,6 +17,25 @@ struct LaserSweep {
   double stamp_share = 0.0;  // share of it that has passed at the scan's stamp
 
   void Visit(OptionsVisitor& v);
+};
+
+// The velocity of a laser, from its poses in order of time.
+class LaserVelocity {
+ public:
+  // The mean since the pose before, in the laser's axes as in AtStamp(); zero where that says
+  // nothing: at the first pose, after a pause, and where no robot moves that fast. `epoch`: poses
+  // of different ones have no motion between them.
+  Eigen::Vector3d To(double stamp_s, const Pose2& odom_from_laser, int epoch);
+  // Call where the pose is not known.
+  void Lose() { before_.reset(); }
+
+ private:
+  struct Seen {
+    double stamp_s = 0.0;
+    Pose2 odom_from_laser;
+    int epoch = 0;
+  };
+  std::optional<Seen> before_;
 };
 
 // Whether a scan's beams are listed in the order in which they were taken.

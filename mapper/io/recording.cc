@@ -131,14 +131,14 @@ class RecordingSource final : public FrameSource {
     }
   }
 
-  // Poses that are held are interpolated, or where that says nothing taken for missing. The frames
-  // before the part say where it begins.
+  // Poses that are held are interpolated, or where that says nothing taken for missing. Those
+  // outside the part say so too, but their images are not read.
   void MendHeldPoses() {
-    const std::size_t first = recording_.part.begin;
     std::vector<std::optional<Pose3>> poses;
-    for (std::size_t i = 0; i < EndOfPart(); ++i) poses.push_back(poses_[i].slam_from_camera);
+    for (const auto& frame : poses_) poses.push_back(frame.slam_from_camera);
     const std::vector<bool> held =
-        HeldFrames(poses, first, [&](std::size_t i) { return Read(recording_.images[i]).depth; });
+        HeldFrames(poses, recording_.part.begin, EndOfPart(),
+                   [&](std::size_t i) { return Read(recording_.images[i]).depth; });
     std::vector<TimedPose> frames;
     for (std::size_t i = 0; i < poses.size(); ++i) {
       frames.push_back({recording_.images[i].stamp_s, poses[i], poses_[i].epoch});

@@ -33,7 +33,7 @@ class NoiseWindow {
   // narrower than the least number of sigmas: the mean would stay near the smallest sample.
   static constexpr double kMaxWindowM = 0.4;
   static constexpr double kLeastSigmas = 5.0;
-  // One standard deviation as a share of the window.
+  // One standard deviation as a share of the window; a sixth less where it is capped.
   static constexpr float kSigmaShare = static_cast<float>(1.0 / kWindowSigmas);
 
   // Width of the window at a range.

@@ -38,7 +38,8 @@ std::vector<std::optional<Pose3>> PosesHeld(std::size_t begin, std::size_t end) 
 }
 
 TEST(HeldFrames, AreThoseWhoseImagesMoveOn) {
-  const std::vector<bool> held = HeldFrames(PosesHeld(20, 40), 0, ImagesTowardsAWall());
+  const std::vector<bool> held =
+      HeldFrames(PosesHeld(20, 40), 0, kHeldTestFrames, ImagesTowardsAWall());
   for (std::size_t i = 0; i < kHeldTestFrames; ++i) {
     if (i <= 20 || i >= 40) {
       EXPECT_FALSE(held[i]) << i;
@@ -49,9 +50,21 @@ TEST(HeldFrames, AreThoseWhoseImagesMoveOn) {
   }
 }
 
+TEST(HeldFrames, ImagesBehindThePartAreNotRead) {
+  std::size_t last = 0;
+  const ImageOfFrame images = ImagesTowardsAWall();
+  const std::vector<bool> held = HeldFrames(PosesHeld(20, 40), 0, 30, [&](std::size_t i) {
+    last = std::max(last, i);
+    return images(i);
+  });
+  EXPECT_LT(last, 30U);
+  EXPECT_TRUE(held[28]);
+}
+
 // A tracker that has not begun gives its first pose: right is the one it begins at.
 TEST(HeldFrames, AtTheStartAreThoseBeforeTheLast) {
-  const std::vector<bool> held = HeldFrames(PosesHeld(0, 30), 0, ImagesTowardsAWall());
+  const std::vector<bool> held =
+      HeldFrames(PosesHeld(0, 30), 0, kHeldTestFrames, ImagesTowardsAWall());
   for (std::size_t i = 0; i < kHeldTestFrames; ++i) {
     if (i < 25) {
       EXPECT_TRUE(held[i]) << i;
@@ -66,8 +79,8 @@ TEST(HeldFrames, AtTheStartAreThoseBeforeTheLast) {
 TEST(HeldFrames, AreAllButTheFirstOfPosesReadTooOften) {
   std::vector<std::optional<Pose3>> poses = PosesHeld(0, 0);
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) poses[i] = poses[i / 3 * 3];
-  const std::vector<bool> held =
-      HeldFrames(poses, 0, [](std::size_t) { return std::shared_ptr<const DepthImage>(); });
+  const std::vector<bool> held = HeldFrames(
+      poses, 0, kHeldTestFrames, [](std::size_t) { return std::shared_ptr<const DepthImage>(); });
   EXPECT_FALSE(held[30]);
   EXPECT_TRUE(held[31]);
   EXPECT_TRUE(held[32]);
@@ -78,13 +91,15 @@ TEST(HeldFrames, AreNotThoseOfACameraThatStands) {
   const auto none = [](const std::vector<bool>& held) {
     return std::none_of(held.begin(), held.end(), [](bool is_held) { return is_held; });
   };
-  EXPECT_TRUE(none(HeldFrames(PosesHeld(0, 30), 0, ImagesTowardsAWall(true))));
-  EXPECT_TRUE(none(HeldFrames(PosesHeld(0, 0), 0, ImagesTowardsAWall())));
-  EXPECT_TRUE(none(HeldFrames(PosesHeld(20, 22), 0, ImagesTowardsAWall())));  // two images near one
-  EXPECT_TRUE(none(HeldFrames(PosesHeld(20, 40), 0, [](std::size_t) { return nullptr; })));
+  EXPECT_TRUE(none(HeldFrames(PosesHeld(0, 30), 0, kHeldTestFrames, ImagesTowardsAWall(true))));
+  EXPECT_TRUE(none(HeldFrames(PosesHeld(0, 0), 0, kHeldTestFrames, ImagesTowardsAWall())));
+  EXPECT_TRUE(none(HeldFrames(PosesHeld(20, 22), 0, kHeldTestFrames,
+                              ImagesTowardsAWall())));  // two images near one
+  EXPECT_TRUE(
+      none(HeldFrames(PosesHeld(20, 40), 0, kHeldTestFrames, [](std::size_t) { return nullptr; })));
   // A recording without any motion is named by the check of its poses.
   EXPECT_TRUE(none(HeldFrames(std::vector<std::optional<Pose3>>(kHeldTestFrames, Pose3{}), 0,
-                              ImagesTowardsAWall())));
+                              kHeldTestFrames, ImagesTowardsAWall())));
 }
 
 }  // namespace

@@ -69,6 +69,31 @@ TEST(LaserSweep, WhatClearsOnlyTurnsAlong) {
   EXPECT_EQ(seen.beams[1].clear_to_m, 5.0F);
 }
 
+TEST(LaserVelocity, IsOfTheMotionSinceThePoseBeforeInTheLasersAxes) {
+  LaserVelocity velocity;
+  const Eigen::Vector3d standing = Eigen::Vector3d::Zero();
+  const Pose2 west{1.0, 2.0, kPi};
+  EXPECT_EQ(velocity.To(5.0, west, 0), standing);
+  const Eigen::Vector3d going(0.5, 0.0, 0.2);
+  const Pose2 on = west * Pose2::FromVector(0.1 * going);
+  EXPECT_LT((velocity.To(5.1, on, 0) - going).norm(), 0.01);
+  EXPECT_LT(velocity.To(5.2, on, 0).norm(), 1e-9);
+}
+
+// A pause, a lost pose, a correction, a jump.
+TEST(LaserVelocity, IsZeroWhereTheMotionSaysNothing) {
+  const Eigen::Vector3d standing = Eigen::Vector3d::Zero();
+  LaserVelocity velocity;
+  velocity.To(0.0, {}, 0);
+  EXPECT_EQ(velocity.To(1.1, {0.3, 0.0, 0.0}, 0), standing);
+  velocity.Lose();
+  EXPECT_EQ(velocity.To(1.2, {0.4, 0.0, 0.0}, 0), standing);
+  EXPECT_EQ(velocity.To(1.3, {0.5, 0.0, 0.0}, 1), standing);
+  EXPECT_EQ(velocity.To(1.4, {1.5, 0.0, 0.0}, 1), standing);
+  EXPECT_EQ(velocity.To(1.5, {1.5, 0.0, 1.0}, 1), standing);
+  EXPECT_NE(velocity.To(1.6, {1.6, 0.0, 1.0}, 1), standing);
+}
+
 TEST(LaserSweep, ReadingsTakenAtOnceStayAsTheyAre) {
   const Scan scan = Swept({0.1, 0.0}, SweepOrder::kAsListed);
   EXPECT_EQ(AtStamp(scan, {}, SweepOrder::kAsListed, kVelocity), scan);
