@@ -44,10 +44,10 @@ class FrameScanner {
 
   // A ready scan is copied, so that the caller may change it: beams sorted by bearing, without
   // those that are not finite, start behind the sensor, or hit nearer than 1 mm or beyond
-  // max_range_m; free space is limited to that range. If max_range_m is 0 or 1 km and more, 250 m is
-  // used, and beams without a hit that clear farther are ignored. Its stand is the frame's. A depth
-  // image without a pose gives no scans; a ready scan needs no pose. Call in order of frames, as
-  // the floor is tracked.
+  // max_range_m; free space is limited to that range. If max_range_m is 0 or 1 km and more, 250 m
+  // is used, and beams without a hit that clear farther are ignored. Its stand is the frame's. A
+  // depth image without a pose gives no scans; a ready scan needs no pose. Call in order of frames,
+  // as the floor is tracked.
   FrameScans ScansOf(const Frame& frame);
 
  private:
