@@ -257,6 +257,7 @@ CarmenLine ParseParameter(Tokens& tokens) {
 
 // Readings in millimetres would all be taken for no return.
 void RequireMetres(const std::vector<double>& range_m) {
+  // Chosen, not measured.
   constexpr double kBeyondAnyM = 100.0;
   constexpr double kCodesRatio = 1.05;  // codes for no return are nearer to each other
   constexpr int kFewest = 20;
@@ -295,9 +296,9 @@ void RequireSound(const CarmenScan& scan) {
           "must be finite");
   require(std::isfinite(scan.bearing_step_rad), "bearing_step_rad", scan.bearing_step_rad,
           "must be finite");
-  const double last_rad =
+  const double end_rad =
       scan.first_bearing_rad + scan.bearing_step_rad * static_cast<double>(scan.range_m.size());
-  for (const double bearing_rad : {scan.first_bearing_rad, last_rad}) {
+  for (const double bearing_rad : {scan.first_bearing_rad, end_rad}) {
     require(std::abs(bearing_rad) <= kFarthestBearingRad, "bearing", bearing_rad,
             "must be radians within two turns: are these degrees?");
   }

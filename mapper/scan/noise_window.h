@@ -30,7 +30,8 @@ class NoiseWindow {
 
   static constexpr double kWindowSigmas = 6.0;
   // Wider than this, the window would join a chair with the wall behind it. But it is never
-  // narrower than the least number of sigmas: the mean would stay near the smallest sample.
+  // narrower than the least number of sigmas: the mean would stay near the smallest sample
+  // (docs/tried.md, "Where a depth camera's reach ends").
   static constexpr double kMaxWindowM = 0.4;
   static constexpr double kLeastSigmas = 5.0;
   // One standard deviation as a share of the window; a sixth less where it is capped.
