@@ -93,9 +93,9 @@ class IncrementalMapper {
   // (mapper/scan/frame_scans.h); stamps that repeat or go back give no speed; a loop to a frame
   // that never came or has no pose counts as rejected.
   //
-  // Time: mostly 0.1 to 0.3 ms. Frames that trigger an adjustment or a search take tens to hundreds
-  // of ms, more with many loops. About once an hour a vector over all frames is reallocated (0.1
-  // s).
+  // Time: mostly 0.1 to 0.3 ms for a laser's scan, 0.4 to 0.8 ms for a depth image of 640x480.
+  // Frames that trigger an adjustment or a search take tens to hundreds of ms, more with many
+  // loops. About once an hour a vector over all frames is reallocated (0.1 s).
   //
   // Memory: a frame leaves 0.6 kB behind, 60 MB an hour, and its scan where that is kept
   // (KeepOptions), 3 kB and more.

@@ -69,7 +69,8 @@ std::optional<std::string> DoubtOfCrossing(const Crossing& crossing) {
   if (crossing.share < kDoubledShare) return {};
   return fmt::format(
       "the map contradicts its own scans: {:.1f} % of the beams lead through its walls (most "
-      "around frame {}), so walls are drawn twice or askew, as where poses are wrong",
+      "around frame {}), so walls are drawn twice or askew, as where poses, or the "
+      "camera's focal length or distortion, are wrong",
       100.0 * crossing.share, *crossing.worst_frame);
 }
 

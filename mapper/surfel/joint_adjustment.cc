@@ -231,7 +231,7 @@ bool AdjustOnce(const Problem& problem, const std::vector<GroupLink>& loops,
     motions[i].sigma = motions[i].sigma.cwiseProduct(result.motion_growth[i]);
   }
   for (const GroupLink& link : links) AddLink(link, map_from_group, *h, g);
-  AddMotions(motions, result.motion_persistence, map_from_group, *h, g);
+  AddMotions(motions, result.motion_persistence, result.motion_growth, map_from_group, *h, g);
   if (!Factor(*h)) return false;
   const std::vector<Eigen::Vector3d> shares = SharesSeen(motions, map_from_group, *h);
   Step(*h, g, map_from_group);

@@ -31,14 +31,22 @@ bool IsUnbroken(const std::vector<GroupLink>& links, std::size_t last) {
   return true;
 }
 
-// Adds the innovation: the error of `link` minus persistence times that of `before`, with its
+// Share of the previous error, in sigmas, that goes on in motion `i`: none that only the growth of
+// sigma from the previous motion would add.
+Eigen::Vector3d GoingOn(std::size_t i, const Eigen::Vector3d& persistence,
+                        const std::vector<Eigen::Vector3d>& growth) {
+  if (growth.empty()) return persistence;
+  return persistence.cwiseProduct(growth[i - 1].cwiseQuotient(growth[i]).cwiseMin(1.0));
+}
+
+// Adds the innovation: the error of `link` minus `going_on` times that of `before`, with its
 // derivatives by the three poses.
 void AddFollowing(const GroupLink& before, const GroupLink& link,
-                  const Eigen::Vector3d& persistence, const std::vector<Pose2>& map_from_group,
-                  PoseMatrix& h, Eigen::VectorXd& g) {
+                  const Eigen::Vector3d& persistence, const Eigen::Vector3d& going_on,
+                  const std::vector<Pose2>& map_from_group, PoseMatrix& h, Eigen::VectorXd& g) {
   const Eigen::Vector3d renewed = (1.0 - persistence.array().square()).sqrt().matrix();
   const Eigen::Vector3d by_link = renewed.cwiseProduct(link.sigma).cwiseInverse();
-  const Eigen::Vector3d by_before = -persistence.cwiseQuotient(renewed.cwiseProduct(before.sigma));
+  const Eigen::Vector3d by_before = -going_on.cwiseQuotient(renewed.cwiseProduct(before.sigma));
   const Eigen::Vector3d error = by_link.cwiseProduct(LinkError(link, map_from_group)) +
                                 by_before.cwiseProduct(LinkError(before, map_from_group));
   const std::array<int, 3> poses = {before.first, link.first, link.second};
@@ -96,15 +104,15 @@ Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
 }
 
 void AddMotions(const std::vector<GroupLink>& motions, const Eigen::Vector3d& persistence,
+                const std::vector<Eigen::Vector3d>& growth,
                 const std::vector<Pose2>& map_from_group, PoseMatrix& h, Eigen::VectorXd& g) {
-  const GroupLink* before = nullptr;
-  for (const GroupLink& link : motions) {
-    if (before != nullptr && Follows(link, *before) && !persistence.isZero(0.0)) {
-      AddFollowing(*before, link, persistence, map_from_group, h, g);
+  for (std::size_t i = 0; i < motions.size(); ++i) {
+    if (i > 0 && Follows(motions[i], motions[i - 1]) && !persistence.isZero(0.0)) {
+      AddFollowing(motions[i - 1], motions[i], persistence, GoingOn(i, persistence, growth),
+                   map_from_group, h, g);
     } else {
-      AddLink(link, map_from_group, h, g);
+      AddLink(motions[i], map_from_group, h, g);
     }
-    before = &link;
   }
 }
 

@@ -113,13 +113,16 @@ TEST(AddMotions, NormalEquationsAreThoseOfNumericDerivatives) {
   const std::vector<GroupLink> links = {link(0, {1e-4, -2e-4, 1e-4}, {0.1, 0.2, 0.05}),
                                         link(1, {-2e-4, 1e-4, 3e-4}, {0.2, 0.1, 0.1})};
   const Eigen::Vector3d persistence(0.9, 0.5, 0.0);
+  // Of x the second sigma has grown threefold: a third of what the ratio of sigmas would carry on.
+  const std::vector<Eigen::Vector3d> growth = {{2.0, 6.0, 1.0}, {6.0, 2.0, 1.0}};
+  const Eigen::Vector3d going_on(0.9 / 3.0, 0.5, 0.0);
   // The first error over its sigma; what is new in the second.
   const auto residuals = [&](const std::vector<Pose2>& at) {
     const Eigen::Vector3d before = LinkError(links[0], at).cwiseQuotient(links[0].sigma);
     const Eigen::Vector3d now = LinkError(links[1], at).cwiseQuotient(links[1].sigma);
     const Eigen::Vector3d renewed = (1.0 - persistence.array().square()).sqrt().matrix();
     Eigen::Matrix<double, 6, 1> both;
-    both << before, (now - persistence.cwiseProduct(before)).cwiseQuotient(renewed);
+    both << before, (now - going_on.cwiseProduct(before)).cwiseQuotient(renewed);
     return both;
   };
   Eigen::Matrix<double, 6, 9> jacobian;
@@ -133,7 +136,7 @@ TEST(AddMotions, NormalEquationsAreThoseOfNumericDerivatives) {
   }
   SkylineMatrix h(std::vector<int>(9, 0));
   Eigen::VectorXd g = Eigen::VectorXd::Zero(9);
-  AddMotions(links, persistence, poses, h, g);
+  AddMotions(links, persistence, growth, poses, h, g);
   const Eigen::MatrixXd expected = jacobian.transpose() * jacobian;
   for (int i = 0; i < 9; ++i) {
     for (int j = 0; j <= i; ++j) {
