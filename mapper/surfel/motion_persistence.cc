@@ -31,8 +31,8 @@ bool IsUnbroken(const std::vector<GroupLink>& links, std::size_t last) {
   return true;
 }
 
-// Share of the previous error, in sigmas, that goes on in motion `i`: none that only the growth of
-// sigma from the previous motion would add.
+// Share of the previous error, in sigmas of each, that goes on in motion `i`. Where sigma has grown
+// since, the same error is fewer sigmas.
 Eigen::Vector3d GoingOn(std::size_t i, const Eigen::Vector3d& persistence,
                         const std::vector<Eigen::Vector3d>& growth) {
   if (growth.empty()) return persistence;

@@ -23,8 +23,8 @@ Eigen::Vector3d MotionPersistence(const std::vector<GroupLink>& unit,
 
 // Adds the motions, in order of time, to the normal equations: each error e / sigma is persistence
 // * (the previous one) + an innovation of variance 1 - persistence^2. A motion that does not follow
-// the previous one is added on its own. `growth`: MotionGrowth() within each sigma, empty for none;
-// an error does not grow with it from one motion to the next.
+// the previous one is added on its own. `growth`: the factor of each sigma that is MotionGrowth(),
+// empty for none; an error that goes on does not grow with it.
 void AddMotions(const std::vector<GroupLink>& motions, const Eigen::Vector3d& persistence,
                 const std::vector<Eigen::Vector3d>& growth,
                 const std::vector<Pose2>& map_from_group, PoseMatrix& h, Eigen::VectorXd& g);

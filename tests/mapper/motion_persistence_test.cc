@@ -113,7 +113,7 @@ TEST(AddMotions, NormalEquationsAreThoseOfNumericDerivatives) {
   const std::vector<GroupLink> links = {link(0, {1e-4, -2e-4, 1e-4}, {0.1, 0.2, 0.05}),
                                         link(1, {-2e-4, 1e-4, 3e-4}, {0.2, 0.1, 0.1})};
   const Eigen::Vector3d persistence(0.9, 0.5, 0.0);
-  // Of x the second sigma has grown threefold: a third of what the ratio of sigmas would carry on.
+  // Of x the second sigma has grown threefold: the error that goes on is a third as many sigmas.
   const std::vector<Eigen::Vector3d> growth = {{2.0, 6.0, 1.0}, {6.0, 2.0, 1.0}};
   const Eigen::Vector3d going_on(0.9 / 3.0, 0.5, 0.0);
   // The first error over its sigma; what is new in the second.
