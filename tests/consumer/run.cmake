@@ -1,5 +1,6 @@
 # Installs the build at BUILD into a scratch folder, builds the consumer against it and runs it: once with all rooms that
-# are installed, once with the mapper alone.
+# are installed, once with the mapper alone and, if the library is built for ARCH, once for an ARCH with fused
+# multiply-adds.
 set(scratch ${BUILD}/consumer)
 file(REMOVE_RECURSE ${scratch})
 function(run)
@@ -22,14 +23,46 @@ foreach(header ${headers})
     endforeach()
   endforeach()
 endforeach()
-# consume(NAME [option...]): configures, builds and runs it.
-function(consume name)
-  run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${scratch}/${name} -G Ninja -DCMAKE_BUILD_TYPE=Release
-    -DCMAKE_CXX_COMPILER=${CXX} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS}" -DCMAKE_PREFIX_PATH=${scratch}/tree ${ARGN})
+# configure(NAME FLAGS [option...]): what follows is in `code` and `said`.
+macro(configure name flags)
+  execute_process(COMMAND ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${scratch}/${name} -G Ninja
+    -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_COMPILER=${CXX} "-DCMAKE_CXX_FLAGS=${CXX_FLAGS} ${flags}"
+    -DCMAKE_PREFIX_PATH=${scratch}/tree ${ARGN} RESULT_VARIABLE code ERROR_VARIABLE said)
+endmacro()
+# consume(NAME FLAGS [option...]): configures, builds and runs it; what it printed is in `NAME_printed`.
+macro(consume name flags)
+  configure(${name} "${flags}" ${ARGN})
+  if(code)
+    message(FATAL_ERROR "${name} is not configured: ${said}")
+  endif()
   run(${CMAKE_COMMAND} --build ${scratch}/${name})
-  run(${scratch}/${name}/consumer)
-endfunction()
-consume(whole)
+  execute_process(COMMAND ${scratch}/${name}/consumer RESULT_VARIABLE code OUTPUT_VARIABLE ${name}_printed)
+  if(code)
+    message(FATAL_ERROR "${name} failed with ${code}: ${${name}_printed}")
+  endif()
+endmacro()
+consume(whole "")
 # A robot that links the mapper alone need not have what reads files.
-consume(mapper_alone -DWITH_FILES=OFF -DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON
+set(without_files -DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON
   -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON)
+consume(mapper_alone "" -DWITH_FILES=OFF ${without_files})
+# Instructions that the compiler may choose from do not change results.
+if(ARCH)
+  consume(fused "-march=${ARCH}")
+  if(NOT fused_printed STREQUAL whole_printed)
+    message(FATAL_ERROR "with -march=${ARCH} other poses: ${fused_printed} instead of ${whole_printed}")
+  endif()
+endif()
+# Components are looked for.
+configure(asks "" "-DASKED=core\\;io\\;mapper\\;metrics")
+if(code)
+  message(FATAL_ERROR "all components are asked for: ${said}")
+endif()
+configure(asks_nosuch "" -DASKED=nosuch)
+if(NOT code OR NOT said MATCHES "component nosuch is not there")
+  message(FATAL_ERROR "component nosuch is asked for: ${said}")
+endif()
+configure(asks_io "" -DASKED=io ${without_files})
+if(NOT code OR NOT said MATCHES "component io is not there")
+  message(FATAL_ERROR "component io is asked for without its packages: ${said}")
+endif()
