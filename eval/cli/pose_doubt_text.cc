@@ -133,7 +133,9 @@ std::string PoseDoubtText(const PoseDoubt& doubt) {
     return apart + ": the poses do not turn, all quaternions are the same";
   }
   if (doubt.reading == PoseReading::kNone) {
-    return apart + ", and no reading of them fits: are they of these images, in this order?";
+    return apart +
+           ", and no reading of them fits: are they of these images, in this order, or does "
+           "something move along with the camera?";
   }
   return fmt::format("{}; they would fit, to {:.1f} %, {}", apart, kPercent * doubt.better_misfit,
                      RemedyOf(doubt));

@@ -18,7 +18,8 @@ class SaturationCheck {
     int frames = 0;
   };
   // The largest depth of all images, if in several of them at least 1 % of the pixels have it
-  // although the camera turned: a wall does not have the same depth from two directions.
+  // although the camera turned: a wall does not have the same depth from two directions. Not where
+  // about as many have the depth one step below, as of a camera whose depth comes in steps.
   std::optional<Saturation> Found() const;
 
  private:

@@ -10,6 +10,7 @@
 #include "mapper/io/camera_formats.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/matrix_poses.h"
+#include "mapper/io/number_rows.h"
 #include "mapper/io/numbered_images.h"
 
 namespace depthgrid {
@@ -19,11 +20,6 @@ namespace fs = std::filesystem;
 
 // Exports of depth in millimetres (7-Scenes, 3DMatch, ScanNet) when no camera file says otherwise.
 constexpr double kMillimetres = 1000.0;
-
-// Names from here on are stamps since 1970 (ROS, EuRoC), not frame numbers: microseconds, and from
-// kLeastNanoseconds on nanoseconds (unambiguous for 3,000 years).
-constexpr long kLeastMicroseconds = 1'000'000'000'000'000;
-constexpr long kLeastNanoseconds = 100'000'000'000'000'000;
 
 std::vector<NumberedImage> DepthImagesOf(const fs::path& folder) {
   for (const char* ending : {".depth.png", "-depth.png", "_depth.png"}) {
@@ -53,11 +49,11 @@ fs::path FolderOfImages(const fs::path& folder) {
   return found.empty() ? folder : found.front();
 }
 
+// Large numbers are stamps since 1970 (ROS, EuRoC, RealSense), others count the frames.
 double StampS(long number, const RecordingOptions& options) {
-  const double units_a_second = number >= kLeastNanoseconds    ? 1e9
-                                : number >= kLeastMicroseconds ? 1e6
-                                                               : options.frame_rate_hz;
-  return static_cast<double>(number) / units_a_second;
+  const auto value = static_cast<double>(number);
+  const double units_a_second = StampUnitsASecond(value);
+  return value / (units_a_second > 1.0 ? units_a_second : options.frame_rate_hz);
 }
 
 std::optional<fs::path> FirstExisting(const std::vector<fs::path>& paths) {

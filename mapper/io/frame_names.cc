@@ -7,6 +7,7 @@
 
 #include "mapper/core/counted.h"
 #include "mapper/core/usual_step.h"
+#include "mapper/io/recording_options.h"
 
 namespace depthgrid {
 namespace {
@@ -82,9 +83,10 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
     return first_pose_s <= end_s && begin_s <= last_pose_s;
   };
   if (!overlap(first_s, last_s)) {
+    const double offset_s = names.time_offset_s + first_pose_s - first_s;
+    if (std::abs(offset_s) > kMostTimeOffsetS) return "are both in seconds?";
     return fmt::format(
-        "--set sequence.recording.time_offset_s={:.3f} makes the first of both coincide",
-        names.time_offset_s + first_pose_s - first_s);
+        "--set sequence.recording.time_offset_s={:.3f} makes the first of both coincide", offset_s);
   }
   if (!overlap(PartBeginS(names), PartEndS(names))) return "none are of the part";
   if (names.interpolated_gap_s) {
@@ -94,7 +96,7 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
         *names.interpolated_gap_s);
   }
   return "--set sequence.recording.interpolate_poses=true interpolates poses up to "
-         "max_interpolation_gap_s apart";
+         "max_interpolation_gap_s apart, for a camera that moves smoothly between them";
 }
 
 }  // namespace

@@ -89,12 +89,24 @@ bool HasLeadingZero(std::string_view number) {
   return number.size() > 1 && number[0] == '0' && number[1] >= '0' && number[1] <= '9';
 }
 
+double StampUnitsASecond(double number) {
+  constexpr double kLeastMicroseconds = 1e15;
+  constexpr double kLeastNanoseconds = 1e17;
+  if (number >= kLeastNanoseconds) return 1e9;
+  if (number >= kLeastMicroseconds) return 1e6;
+  return number >= kLatestStampS ? 1e3 : 1.0;
+}
+
 void RequireSeconds(double stamp_s, const std::string& place) {
   if (!std::isfinite(stamp_s)) throw InputError(place, "the stamp must be finite");
   if (std::abs(stamp_s) <= kLatestStampS) return;
-  throw InputError(place, fmt::format("the stamp is {:.6g}, must be in seconds, not in milli- or "
-                                      "nanoseconds",
-                                      stamp_s));
+  const double units_a_second = StampUnitsASecond(std::abs(stamp_s));
+  throw InputError(
+      place,
+      fmt::format("the stamp is {:.6g}, must be in seconds, not in milli- or nanoseconds: "
+                  "divide all of the file by 1e{:.0f}{}",
+                  stamp_s, std::log10(units_a_second),
+                  units_a_second == 1e3 ? ", or by 1e9 if they do not count from 1970" : ""));
 }
 
 bool IsSameStamp(double a_s, double b_s) {

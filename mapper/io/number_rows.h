@@ -50,6 +50,9 @@ std::vector<double> NumbersIn(const TextRow& row, std::size_t count, const std::
 
 // Stamps are in seconds; milliseconds or nanoseconds since 1970 are beyond this (year 5138).
 constexpr double kLatestStampS = 1e11;
+// Units per second of a number that may be a time since 1970: milliseconds from kLatestStampS on,
+// microseconds from 1e15 and nanoseconds from 1e17 on (unambiguous from 1973 to 5138); below, 1.
+double StampUnitsASecond(double number);
 // Throws InputError unless it is a finite number of seconds.
 void RequireSeconds(double stamp_s, const std::string& place);
 

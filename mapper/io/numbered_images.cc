@@ -21,7 +21,7 @@ std::optional<long> TrailingNumber(const std::string& stem) {
 
 // The stamp in a name like "12.160407", also after a word such as "frame_" or "frame-". "1.12" may
 // be the twelfth image of the first camera, so a stamp needs three decimals or must be a time since
-// 1970.
+// 1970. Milliseconds since 1970 may have a fraction, too (the RealSense viewer's).
 std::optional<double> StampIn(const std::string& stem) {
   constexpr std::size_t kLeastDigits = 3;
   constexpr double kLeastSince1970S = 1e8;
@@ -33,7 +33,8 @@ std::optional<double> StampIn(const std::string& stem) {
   const auto stamp_s = ParseNumber(std::string_view(stem).substr(begin));
   const bool is_stamp =
       stamp_s && (stem.size() - point > kLeastDigits || *stamp_s >= kLeastSince1970S);
-  return is_stamp ? stamp_s : std::nullopt;
+  if (!is_stamp) return {};
+  return *stamp_s / StampUnitsASecond(*stamp_s);
 }
 
 // Sets the stamps of all images if all names are stamps.

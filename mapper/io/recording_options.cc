@@ -7,7 +7,7 @@ void RecordingOptions::Visit(OptionsVisitor& v) {
            "stamps closer than this belong together");
   v.Choice("pose_stamp", pose_stamp, {{PoseStamp::kColour, "colour"}, {PoseStamp::kDepth, "depth"}},
            "the image by whose stamp a frame's pose is looked up");
-  v.Number("time_offset_s", time_offset_s, {-1e10, 1e10},
+  v.Number("time_offset_s", time_offset_s, {-kMostTimeOffsetS, kMostTimeOffsetS},
            "added to an image's stamp before its pose is looked up");
   v.Flag("interpolate_poses", interpolate_poses,
          "interpolate between neighbouring poses instead of taking the nearest");

@@ -10,6 +10,8 @@ namespace depthgrid {
 // Which stamp of a frame is used to look up its pose.
 enum class PoseStamp { kColour, kDepth };
 
+constexpr double kMostTimeOffsetS = 1e10;  // stamps since 1970 beside those since the start
+
 struct RecordingOptions {
   // Stamps closer than this belong together: depth with colour, images with poses. TUM RGB-D's
   // associate.py uses the same; at 30 Hz it is a bit more than half a frame.
@@ -18,7 +20,7 @@ struct RecordingOptions {
   // images' stamps. Without colour images it is always depth.
   PoseStamp pose_stamp = PoseStamp::kColour;
   // Added to an image's stamp before its pose is looked up: positive when the poses' clock is
-  // ahead.
+  // ahead. At most kMostTimeOffsetS.
   double time_offset_s = 0.0;
   // Interpolates between the two neighbouring poses, at most max_interpolation_gap_s apart, instead
   // of taking the nearest.

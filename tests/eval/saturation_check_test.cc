@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "mapper/core/angle.h"
@@ -42,6 +43,29 @@ TEST(SaturationCheck, FindsTheDepthThatEverythingFartherIsCutTo) {
   // Once something lies beyond, it was a wall.
   cut.Add(Slope(4.0F, 0.0F), Turned(0.5));
   EXPECT_FALSE(cut.Found());
+}
+
+// Steps of disparity, and no depth at all beyond 3.5 m: the last step is as full as those below.
+TEST(SaturationCheck, TheLastStepOfDisparityIsNotACut) {
+  constexpr float kStepsM = 350.0F;  // depth times disparity
+  const auto stepped = [](float cut_m, float shift_m) {
+    DepthImage image = Slope(100.0F, shift_m);
+    for (float& z_m : image.z_m) {
+      z_m = kStepsM / std::round(kStepsM / z_m);
+      if (z_m > 3.5F) z_m = kInvalidDepth;
+      z_m = std::min(cut_m, z_m);
+    }
+    return image;
+  };
+  SaturationCheck whole, cut;
+  for (int i = 0; i < 20; ++i) {
+    const float shift_m = 0.02F * static_cast<float>(i);
+    whole.Add(stepped(100.0F, shift_m), Turned(0.02 * i));
+    cut.Add(stepped(2.5F, shift_m), Turned(0.02 * i));
+  }
+  EXPECT_FALSE(whole.Found());
+  ASSERT_TRUE(cut.Found());
+  EXPECT_EQ(cut.Found()->z_m, 2.5F);
 }
 
 // Wherever in the image it stands, and whatever else is no depth.

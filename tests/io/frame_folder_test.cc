@@ -176,8 +176,8 @@ TEST_F(FrameFolderTest, ImagesAloneTakeThePosesThatAreGiven) {
 }
 
 // As ROS and EuRoC name them.
-TEST_F(FrameFolderTest, NamesOfMicroAndNanosecondsAreStamps) {
-  for (const std::string& zeros : {std::string("000"), std::string("000000")}) {
+TEST_F(FrameFolderTest, NamesOfMilliMicroAndNanosecondsAreStamps) {
+  for (const std::string zeros : {"", "000", "000000"}) {
     SetUp();
     for (const int milliseconds : {0, 50}) {
       WriteDepth(fmt::format("depth/14036365797{:02}{}.png", 10 + milliseconds, zeros), 1000);
@@ -215,11 +215,22 @@ TEST_F(FrameFolderTest, NamesOfSecondsWithAFractionAreStamps) {
   EXPECT_DOUBLE_EQ(listed.recording.images[1].stamp_s, 10.0 / 30.0);
 }
 
+// As the RealSense viewer exports them.
+TEST_F(FrameFolderTest, NamesOfMillisecondsWithAFractionAreStamps) {
+  for (const char* stamp : {"1700001000000.00000000000", "1700001000033.33300781250"}) {
+    WriteDepth(std::string("depth/_Depth_") + stamp + ".png", 1000);
+  }
+  const FrameFolder listed = ListFrameFolder(folder_, {});
+  ASSERT_EQ(listed.recording.images.size(), 2U);
+  EXPECT_NEAR(listed.recording.images[0].stamp_s, 1700001000.0, 1e-6);
+  EXPECT_NEAR(listed.recording.images[1].stamp_s, 1700001000.033333, 1e-6);
+}
+
 // The map's files hold stamps of seconds: it would be refused when it is written.
 TEST_F(FrameFolderTest, ANumberThatIsNoStampIsRefusedFirst) {
   WriteSevenScenes("");
   WriteDepth("frame-500000000000000.depth.png", 1000);
-  EXPECT_THAT(OpenError(), HasSubstr("~/frame-500000000000000.depth.png: the stamp is 1.66667e+13, "
+  EXPECT_THAT(OpenError(), HasSubstr("~/frame-500000000000000.depth.png: the stamp is 5e+11, "
                                      "must be in seconds"));
 }
 

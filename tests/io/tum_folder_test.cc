@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "mapper/io/number_rows.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/sequence.h"
 #include "mapper/io/trajectory_file.h"
@@ -291,7 +292,8 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
               ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
                                     "poses from 0.000 to 0.300 s; --set "
                                     "sequence.recording.interpolate_poses=true interpolates poses "
-                                    "up to max_interpolation_gap_s apart"));
+                                    "up to max_interpolation_gap_s apart, for a camera that moves "
+                                    "smoothly between them"));
   RecordingOptions interpolate;
   interpolate.interpolate_poses = true;
   const Trajectory sparse = {PoseAt(0.0, 0.0), PoseAt(0.3, 1.0)};
@@ -342,6 +344,26 @@ TEST_F(TumFolderTest, WhatIsAddedToTheStampsIsSaidWhereTheyAre) {
             "~: no pose within 0.02 s of any image: images from 2.500 to 2.875 s (2.5 s added), "
             "poses from 0.000 to 0.375 s; --set sequence.recording.time_offset_s=0.000 makes the "
             "first of both coincide");
+}
+
+// time_offset_s would refuse the difference.
+TEST_F(TumFolderTest, NoOffsetIsOfferedThatIsRefused) {
+  WriteSequence();
+  const Trajectory far = {PoseAt(0.5 * kLatestStampS, 0.0), PoseAt(0.5 * kLatestStampS + 1.0, 1.0)};
+  EXPECT_THAT(OpenError(far), testing::EndsWith("s; are both in seconds?"));
+}
+
+TEST_F(TumFolderTest, StampsOfOtherUnitsAreRefusedWithTheirUnit) {
+  WriteSequence();
+  const auto said = [&](const std::string& stamp) {
+    Write("depth.txt", stamp + " depth/0.000000.png\n");
+    return OpenError({PoseAt(0.0, 0.0)});
+  };
+  EXPECT_THAT(said("1700000000000000000"), testing::EndsWith("nanoseconds: divide all of the file "
+                                                             "by 1e9"));
+  EXPECT_THAT(said("1700000000000000"), testing::EndsWith(": divide all of the file by 1e6"));
+  EXPECT_THAT(said("1700000000000"), testing::EndsWith(": divide all of the file by 1e3, or by 1e9 "
+                                                       "if they do not count from 1970"));
 }
 
 TEST_F(TumFolderTest, OneClearLineForEachFault) {
