@@ -8,6 +8,7 @@
 #include "mapper/core/slam_output.h"
 #include "mapper/io/gravity.h"
 #include "mapper/io/recording.h"
+#include "mapper/io/world_up.h"
 
 namespace depthgrid {
 
@@ -16,8 +17,9 @@ namespace depthgrid {
 std::optional<Gravity> FindGravity(const Recording& recording, const SlamOutput& slam,
                                    const DepthReader& reader, const RecordingOptions& options);
 
-// The floor's normal, snapped to an axis if near enough.
-Eigen::Vector3d SnappedUp(const Gravity& gravity);
+// The floor's normal, snapped to an axis if it may be that: to `usual_up`, in which level poses are
+// told, if it is as near as images differ, to another if it is as near as their mean is sure.
+Eigen::Vector3d SnappedUp(const Gravity& gravity, WorldUp usual_up);
 
 // "z" or "(0.000, 0.707, 0.707)".
 std::string ShownUp(const Eigen::Vector3d& up);

@@ -2,26 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
-#include <iterator>
 #include <limits>
-#include <map>
-#include <utility>
 
 #include "mapper/core/angle.h"
 #include "mapper/core/median.h"
-#include "mapper/core/symmetric_eigen.h"
+#include "mapper/io/level_surface.h"
 
 namespace depthgrid {
 namespace {
 
+using internal::FitNear;
+using internal::kHeightBinM;
+using internal::LevelPoints;
+using internal::Levels;
+using internal::NormalOf;
+using internal::PlaneFit;
 using internal::SurfaceView;
 using Patches = std::vector<internal::SurfacePatch>;
 using Views = std::vector<SurfaceView>;
 
 const double kMaxFromImageUp = std::cos(RadFromDeg(50.0));
 const double kCandidateCone = std::cos(RadFromDeg(6.0));
-const double kFloorCone = std::cos(RadFromDeg(12.0));
 constexpr std::size_t kCandidates = 300;
 constexpr std::size_t kVoterStep = 3;
 constexpr std::size_t kMinFloorPatches = 200;
@@ -30,9 +31,6 @@ constexpr double kMinFloorShare = 0.02;  // of all patches
 constexpr std::size_t kMinViewPatches = 40;
 constexpr double kWanderShare = 0.9;
 
-constexpr double kHeightBinM = 0.05;
-// The floor is the lowest level whose bin has this share of the fullest one.
-constexpr double kFloorPeakShare = 0.25;
 // The images agree on the floor when this share of them has its lowest surface this near to it.
 constexpr double kAgreeM = 0.1;
 constexpr double kAgreeShare = 0.5;
@@ -49,6 +47,13 @@ constexpr double kDriftRad = RadFromDeg(0.8);
 // SLAM's tilt also drifted, at the start only, if the first images' floor is off from the common
 // one by more than a single place may be (1.5 degrees).
 constexpr double kFirstOffRad = RadFromDeg(2.0);
+// Furniture stands on floors. Of the patches of ceilings up to 4 % are on something this much
+// nearer to the camera (docs/tried.md, "Other people's data"); of the floors of cameras that are
+// upside down 8 to 22 %, ten times the share of the ceiling or more.
+constexpr double kStandingM = 0.2;
+constexpr double kCrowdedShare = 0.06;
+constexpr double kMoreCrowded = 5.0;
+constexpr std::size_t kMinCeilingPatches = 500;
 // Patches this near to the plane are used in its fit, per iteration.
 constexpr double kFitBandM[] = {0.15, 0.10, 0.07, 0.05};
 
@@ -70,84 +75,10 @@ Eigen::Vector3d CommonNormal(const Patches& patches) {
   return best;
 }
 
-std::vector<Eigen::Vector3d> LevelPoints(const Patches& patches, const Eigen::Vector3d& up) {
-  std::vector<Eigen::Vector3d> points;
-  for (const internal::SurfacePatch& patch : patches) {
-    if (patch.normal.dot(up) >= kFloorCone) points.push_back(patch.point);
-  }
-  return points;
-}
-
-// Histogram of heights in bins of kHeightBinM. Sparse, as poses may be thousands of kilometres
-// apart.
-struct Levels {
-  double low_m = 0.0;
-  std::map<std::int64_t, int> bins;
-
-  Levels(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up) {
-    low_m = up.dot(points.front());
-    for (const Eigen::Vector3d& point : points) low_m = std::min(low_m, up.dot(point));
-    for (const Eigen::Vector3d& point : points) {
-      ++bins[static_cast<std::int64_t>((up.dot(point) - low_m) / kHeightBinM)];
-    }
-  }
-
-  double HeightM(std::int64_t bin) const {
-    return low_m + (static_cast<double>(bin) + 0.5) * kHeightBinM;
-  }
-  // The fullest bin; the lowest of several.
-  std::pair<std::int64_t, int> Fullest() const {
-    return *std::max_element(bins.begin(), bins.end(),
-                             [](const auto& a, const auto& b) { return a.second < b.second; });
-  }
-  double FullestM() const { return HeightM(Fullest().first); }
-  // The lowest level with many points.
-  double LowestM() const {
-    const double enough = kFloorPeakShare * Fullest().second;
-    auto lowest = bins.begin();
-    while (lowest->second < enough) ++lowest;
-    for (auto next = std::next(lowest); next != bins.end(); lowest = next++) {
-      if (next->first != lowest->first + 1 || next->second <= lowest->second) break;
-    }
-    return HeightM(lowest->first);
-  }
-};
-
-// Scatter of the points near a height around their mean; the direction of least spread is the
-// plane's normal.
-struct PlaneFit {
-  std::size_t points = 0;
-  Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-};
-
-PlaneFit FitNear(const std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& up,
-                 double height_m, double band_m) {
-  PlaneFit fit;
-  const auto near = [&](const Eigen::Vector3d& point) {
-    return std::abs(up.dot(point) - height_m) <= band_m;
-  };
-  for (const Eigen::Vector3d& point : points) {
-    if (!near(point)) continue;
-    ++fit.points;
-    fit.mean += point;
-  }
-  if (fit.points == 0) return fit;
-  fit.mean /= static_cast<double>(fit.points);
-  for (const Eigen::Vector3d& point : points) {
-    if (near(point)) fit.scatter += (point - fit.mean) * (point - fit.mean).transpose();
-  }
-  return fit;
-}
-
-Eigen::Vector3d NormalOf(const Eigen::Matrix3d& scatter, const Eigen::Vector3d& up) {
-  const Eigen::Vector3d normal = EigenOf(scatter).vectors.col(0);
-  return normal.dot(up) < 0.0 ? Eigen::Vector3d(-normal) : normal;
-}
-
 struct Direction {
   Eigen::Vector3d up;
   double wander_rad;
+  double error_rad;
   bool drifts;
 };
 
@@ -279,25 +210,49 @@ bool IsFloorToo(const Views& first_views, const Eigen::Vector3d& first_up, const
                   MiddleOf(later, &FloorOfViews::camera_height_m)) <= kAgreeM;
 }
 
-std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
-                                  const Eigen::Vector3d& about_up) {
-  const CommonLevel level = FitCommonLevel(views, about_up);
-  if (level.fits.empty()) return {};
+// Of each image's normal.
+std::vector<double> AnglesFrom(const CommonLevel& level) {
   std::vector<double> angles_rad;
   for (const PlaneFit& fit : level.fits) {
     angles_rad.push_back(AngleBetween(level.up, NormalOf(fit.scatter, level.up)));
   }
-  std::sort(angles_rad.begin(), angles_rad.end());
-  const auto rank = static_cast<std::size_t>(kWanderShare * static_cast<double>(angles_rad.size()));
-  const double wander_rad = angles_rad[std::min(rank, angles_rad.size() - 1)];
+  return angles_rad;
+}
+
+// The median angle between the normals of images that follow each other. If SLAM's tilt drifts it
+// is a small part of their scatter, if each image has an error of its own 1.4 times as much.
+double StepOf(const CommonLevel& level) {
+  std::vector<double> steps_rad = {0.0};
+  for (std::size_t i = 1; i < level.fits.size(); ++i) {
+    steps_rad.push_back(AngleBetween(NormalOf(level.fits[i - 1].scatter, level.up),
+                                     NormalOf(level.fits[i].scatter, level.up)));
+  }
+  return UpperMedian(steps_rad);
+}
+
+double QuantileOf(std::vector<double> numbers, double share) {
+  std::sort(numbers.begin(), numbers.end());
+  const auto rank = static_cast<std::size_t>(share * static_cast<double>(numbers.size()));
+  return numbers[std::min(rank, numbers.size() - 1)];
+}
+
+std::optional<Direction> CommonUp(const Views& views, const Views& first_views,
+                                  const Eigen::Vector3d& about_up) {
+  const CommonLevel level = FitCommonLevel(views, about_up);
+  if (level.fits.empty()) return {};
+  const auto angles_rad = AnglesFrom(level);
+  const double wander_rad = QuantileOf(angles_rad, kWanderShare);
+  const double error_rad = wander_rad / std::sqrt(static_cast<double>(angles_rad.size()));
+  const double usual_rad = UpperMedian(angles_rad);
   const std::optional<Eigen::Vector3d> first = UpAtFirst(first_views);
-  const bool drifts = angles_rad[angles_rad.size() / 2] > kDriftRad ||
+  const bool drifts = (usual_rad > kDriftRad && StepOf(level) < usual_rad) ||
                       (first && AngleBetween(level.up, *first) > kFirstOffRad &&
                        !SeeSameFloor(first_views, views, level.up) &&
                        IsFloorToo(first_views, *first, views, level.up));
-  if (!drifts) return Direction{level.up, wander_rad, false};
+  if (!drifts) return Direction{level.up, wander_rad, error_rad, false};
   // Otherwise from the first of the spread images that see a floor.
-  return Direction{first ? *first : FirstUp(level.fits, level.up, kFirstViews), wander_rad, true};
+  return Direction{first ? *first : FirstUp(level.fits, level.up, kFirstViews), wander_rad,
+                   error_rad, true};
 }
 
 std::vector<FloorOfViews> WithoutTables(std::vector<FloorOfViews> floors, double usual_camera_m) {
@@ -355,6 +310,33 @@ FloorOfViews FloorUnder(const Views& views, const Views& first_views,
   return {floor_m, UpperMedian(cameras_m), false};
 }
 
+struct Crowd {
+  std::size_t level = 0;     // patches
+  std::size_t standing = 0;  // of them, on what stands on the lowest level of their image
+  double Share() const {
+    return level == 0 ? 0.0 : static_cast<double>(standing) / static_cast<double>(level);
+  }
+};
+
+// Each image for itself, as SLAM's height drifts.
+Crowd CrowdOn(const Views& views, const Eigen::Vector3d& up) {
+  Crowd crowd;
+  for (const SurfaceView& view : views) {
+    const std::vector<Eigen::Vector3d> own = LevelPoints(view.patches, up);
+    if (own.size() < kMinViewPatches) continue;
+    const double standing_m = Levels(own, up).LowestM() + kStandingM;
+    crowd.level += own.size();
+    for (const Eigen::Vector3d& point : own) crowd.standing += up.dot(point) > standing_m ? 1 : 0;
+  }
+  return crowd;
+}
+
+bool CrowdedAbove(const Views& views, const Eigen::Vector3d& up) {
+  const Crowd above = CrowdOn(views, -up);
+  return above.level >= kMinCeilingPatches && above.Share() > kCrowdedShare &&
+         above.Share() > kMoreCrowded * CrowdOn(views, up).Share();
+}
+
 Views Upward(Views views, const Eigen::Vector3d& image_up) {
   for (SurfaceView& view : views) {
     std::erase_if(view.patches,
@@ -376,13 +358,15 @@ void GravityFinder::AddFirst(const DepthImage& image, const PinholeCamera& camer
   first_views_.push_back(internal::ViewOf(image, camera, world_from_camera));
 }
 
-std::optional<Gravity> GravityFinder::Find() const {
+std::optional<Gravity> GravityFinder::Find(bool upside_down) const {
   if (images_up_.Mean().norm() == 0.0) return {};
-  const Eigen::Vector3d image_up = images_up_.Mean().normalized();
+  const Eigen::Vector3d image_up = (upside_down ? -1.0 : 1.0) * images_up_.Mean().normalized();
   const Views upward = Upward(views_, image_up);
   const Views first_upward = Upward(first_views_, image_up);
   const Patches together = PatchesOf(upward);
-  const double share = kMinFloorShare * static_cast<double>(PatchesOf(views_).size());
+  // A camera mounted upside down mostly looks up.
+  const double share =
+      upside_down ? 0.0 : kMinFloorShare * static_cast<double>(PatchesOf(views_).size());
   const std::size_t needed = std::max(kMinFloorPatches, static_cast<std::size_t>(share));
   if (together.size() < needed) return {};
   const auto direction = CommonUp(upward, first_upward, CommonNormal(together));
@@ -392,9 +376,15 @@ std::optional<Gravity> GravityFinder::Find() const {
   const FloorOfViews floor = FloorUnder(upward, first_upward, level, direction->up);
   if (floor.camera_height_m <= 0.0) return {};
   const double below = internal::ShareBelow(views_, direction->up, floor.height_m - kTableM);
-  return Gravity{direction->up,  direction->wander_rad, direction->drifts,
-                 floor.height_m, floor.camera_height_m, floor.is_late,
-                 below};
+  return Gravity{direction->up,
+                 direction->wander_rad,
+                 direction->error_rad,
+                 direction->drifts,
+                 floor.height_m,
+                 floor.camera_height_m,
+                 floor.is_late,
+                 below,
+                 CrowdedAbove(views_, direction->up)};
 }
 
 }  // namespace depthgrid

@@ -19,6 +19,8 @@ struct Gravity {
   // 90 % quantile of the angle between up in single images and up_in_world: SLAM's tilt drifts and
   // normals have errors.
   double wander_rad = 0.0;
+  // Of the images' mean: wander_rad over the root of their number.
+  double error_rad = 0.0;
   // wander_rad is more than errors of normals explain: SLAM's tilt drifts, and up is from the first
   // images.
   bool drifts = false;
@@ -29,6 +31,8 @@ struct Gravity {
   // It drifts, and the first images see no floor: floor_m includes the drift until one did.
   bool floor_is_late = false;
   double share_below = 0.0;  // share of all surface seen that is clearly below the floor
+  // More stands on what is seen above, as if that were the floor and the images upside down.
+  bool crowded_above = false;
 };
 
 // Whether the "floor" may be a table that fills the images, with lower surfaces beside it. Below a
@@ -45,9 +49,9 @@ class GravityFinder {
                 const Pose3& world_from_camera);
 
   // Nothing when no plane below the cameras is large enough. Assumes that images are upright
-  // within 50 degrees on average, or held in portrait in a world whose z is up, and that the camera
-  // turns (ImagesUp).
-  std::optional<Gravity> Find() const;
+  // within 50 degrees on average, or that the camera turns (ImagesUp). `upside_down`: images are
+  // held the other way up.
+  std::optional<Gravity> Find(bool upside_down = false) const;
 
  private:
   std::vector<internal::SurfaceView> views_;

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <cmath>
 
 #include "mapper/core/pose3.h"
 
@@ -10,27 +9,22 @@ namespace depthgrid {
 
 class ImagesUp {
  public:
-  void Add(const Pose3& world_from_camera) {
-    ++count_;
-    upward_ += world_from_camera.rotation * -Eigen::Vector3d::UnitY();
-    sideways_ += std::abs((world_from_camera.rotation * Eigen::Vector3d::UnitX()).z());
-  }
-  // The mean of the images' upward directions, in the world, of no certain length; zero without
-  // images. Of images held in portrait, which point upward in all directions as the camera turns
-  // while z of the world stays beside them, it is z.
-  Eigen::Vector3d Mean() const {
-    // Images pitched by up to 37 degrees agree as well, whichever way the camera turns; those
-    // pitched so in portrait have z beside them by more. Chosen, not measured.
-    constexpr double kMostAgreement = 0.8, kLeastSideways = 0.75;
-    const bool agree = upward_.norm() > kMostAgreement * count_;
-    const bool lie_aside = sideways_ > kLeastSideways * count_;
-    return !agree && lie_aside ? Eigen::Vector3d(Eigen::Vector3d::UnitZ()) : upward_;
-  }
+  void Add(const Pose3& world_from_camera);
+
+  // About up in the world, of no certain length; zero without images. The mean of the images' own
+  // upward directions where these agree. Elsewhere, if the camera turned, the direction to which
+  // one axis of the images, x or in portrait y, stays square, however far the camera looks down.
+  // Of images held in portrait it is z where z of the world stays beside them.
+  Eigen::Vector3d Mean() const;
 
  private:
   int count_ = 0;
   Eigen::Vector3d upward_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d backward_ = Eigen::Vector3d::Zero();
   double sideways_ = 0.0;
+  // Sums of a a^T over the images' x and y axes.
+  Eigen::Matrix3d x_scatter_ = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d y_scatter_ = Eigen::Matrix3d::Zero();
 };
 
 }  // namespace depthgrid

@@ -21,6 +21,8 @@ void RecordingOptions::Visit(OptionsVisitor& v) {
            "depth image units per metre; 0 takes the camera file's");
   v.Flag("drop_body", drop_body,
          "leave out what stays nearer than 1 m while the camera turns: the robot's own body");
+  v.Flag("upside_down", upside_down,
+         "whether the camera is mounted upside down; for finding up, the images stay as they are");
 }
 
 }  // namespace depthgrid

@@ -35,6 +35,8 @@ struct RecordingOptions {
   double depth_scale_per_m = 0.0;
   // Invalidates parts of the robot in the images (BodyFinder).
   bool drop_body = true;
+  // For a camera mounted upside down: up is sought beyond the images' lower edge.
+  bool upside_down = false;
 
   void Visit(OptionsVisitor& v);
 };

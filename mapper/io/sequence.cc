@@ -29,6 +29,8 @@ const double kSureOfAxis = std::cos(RadFromDeg(45.0));
 // left-handed world make of the floor (15 degrees were seen). Not more, as up comes near to -z also
 // in the axes of a first camera that looks down steeply. Chosen.
 const double kSureOfOpposite = std::cos(RadFromDeg(30.0));
+// Of the first pose of a world that it defines; files round.
+constexpr double kIsIdentityRad = RadFromDeg(0.1);
 // A floor this near to zero is set to zero, where ground truth has it; estimates scatter by
 // centimetres.
 constexpr double kFloorIsZeroM = 0.02;
@@ -92,9 +94,54 @@ void CheckAxis(const DepthSequence& sequence, const SequenceOptions& options, Se
   if (!gravity) return;
   const double along = gravity->up_in_world.dot(AxisOf(options.world_up));
   if (along <= kSureOfAxis) {
-    result.up_doubt = UpDoubt{ShownUp(SnappedUp(*gravity)), along < -kSureOfOpposite};
+    result.up_doubt =
+        UpDoubt{ShownUp(SnappedUp(*gravity, sequence.usual_up)), along < -kSureOfOpposite};
   } else if (!IsTable(*gravity)) {
     result.seen_floor_z_m = gravity->floor_m;
+  }
+}
+
+// Whether the first camera is the poses' world, as for ORB-SLAM2: if it looks down, z points down.
+bool WorldIsFirstCamera(const SlamOutput& slam) {
+  const auto first = std::find_if(slam.live.begin(), slam.live.end(), [](const SlamPose& pose) {
+    return pose.slam_from_camera.has_value();
+  });
+  return first != slam.live.end() &&
+         LogRotation(first->slam_from_camera->rotation).norm() < kIsIdentityRad;
+}
+
+std::string NoFloorWarning(const DepthSequence& sequence, RecordingOptions options) {
+  const std::string taken =
+      fmt::format("no floor seen in the images, {} is taken as up (--up says another axis)",
+                  NameOf(sequence.usual_up));
+  options.upside_down = !options.upside_down;
+  if (!FindGravity(sequence, options)) return taken;
+  return fmt::format(
+      "{}; one is seen if the camera is mounted {}: --set sequence.recording.upside_down={}", taken,
+      options.upside_down ? "upside down" : "upright", options.upside_down);
+}
+
+// Warns of an up that the images leave open.
+void DoubtUp(const std::string& path, const RecordingOptions& options, const Gravity& gravity,
+             const Eigen::Vector3d& up, DepthSequence& sequence) {
+  std::vector<std::string>& warnings = sequence.recording.warnings;
+  const bool is_minus_z = up == AxisOf(WorldUp::kMinusZ);
+  if (is_minus_z || (-up.z() > kSureOfOpposite && !WorldIsFirstCamera(sequence.slam))) {
+    warnings.push_back(fmt::format(
+        "{}: up is {}, right if z of the poses' world points down{}; if the camera is mounted "
+        "upside down, the ceiling is taken for the floor and the map is mirrored, and --up z is "
+        "right; poses of a left-handed world have no right axis",
+        path, ShownUp(up), is_minus_z ? " (--up -z says so)" : ""));
+  } else if (gravity.crowded_above) {
+    warnings.push_back(fmt::format(
+        "{}: things stand on what is taken for the ceiling: if the camera is mounted {}, the map "
+        "is mirrored, and --set sequence.recording.upside_down={} is right",
+        path, options.upside_down ? "upright" : "upside down", !options.upside_down));
+  }
+  if (gravity.floor_is_late) {
+    warnings.push_back(path +
+                       ": SLAM's height drifts, and the first images see no floor: every z may be "
+                       "off by its drift until one does");
   }
 }
 
@@ -103,12 +150,10 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
                        DepthSequence& sequence, Sequence& result) {
   const auto gravity = FindGravity(sequence, options);
   if (!gravity) {
-    sequence.recording.warnings.push_back(
-        fmt::format("{}: no floor seen in the images, {} is taken as up (--up says another axis)",
-                    path, NameOf(sequence.usual_up)));
+    sequence.recording.warnings.push_back(path + ": " + NoFloorWarning(sequence, options));
     return AxisOf(sequence.usual_up);
   }
-  const Eigen::Vector3d up = SnappedUp(*gravity);
+  const Eigen::Vector3d up = SnappedUp(*gravity, sequence.usual_up);
   if (!IsTable(*gravity)) result.seen_floor_z_m = gravity->floor_m;
   result.floor_z_m = std::abs(gravity->floor_m) < kFloorIsZeroM ? 0.0 : gravity->floor_m;
   const double removed_deg = DegFromRad(std::acos(std::clamp(up.z(), -1.0, 1.0)));
@@ -116,18 +161,7 @@ Eigen::Vector3d FindUp(const std::string& path, const RecordingOptions& options,
   result.notes.push_back(
       fmt::format("the camera is {:.2f} m above the floor, the floor at z = {:.2f}",
                   gravity->camera_height_m, *result.floor_z_m));
-  if (-up.z() > kSureOfOpposite) {
-    sequence.recording.warnings.push_back(fmt::format(
-        "{}: up is {}, right if z of the poses' world points down (--up -z says so); if the camera "
-        "is mounted upside down, the ceiling is taken for the floor and the map is mirrored, and "
-        "--up z is right; poses of a left-handed world have no right axis",
-        path, ShownUp(up)));
-  }
-  if (gravity->floor_is_late) {
-    sequence.recording.warnings.push_back(path +
-                                          ": SLAM's height drifts, and the first images see no "
-                                          "floor: every z may be off by its drift until one does");
-  }
+  DoubtUp(path, options, *gravity, up, sequence);
   return up;
 }
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mapper/core/rng.h"
+#include "mapper/io/find_up.h"
 #include "mapper/io/world_up.h"
 #include "tests/mapper/analytic_room.h"
 
@@ -88,6 +89,99 @@ TEST(Gravity, PortraitImagesAreTakenAsTheWorldsZSays) {
     EXPECT_LT(AngleDeg(gravity->up_in_world, Eigen::Vector3d::UnitZ()), 0.3);
     EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.02);
   }
+}
+
+// Half a round, told in the axes of its first camera.
+struct HalfRound {
+  Pose3 told_from_true;
+  GravityFinder finder;
+};
+HalfRound TurnedHalfRound(double pitch_rad, double roll_rad) {
+  const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
+  HalfRound round;
+  for (int i = 0; i < 12; ++i) {
+    const Pose3 pose = TiltedCamera({0.3 * std::cos(i), 0.3 * std::sin(i), kPi * i / 12.0},
+                                    kHeightM, pitch_rad, roll_rad);
+    if (i == 0) round.told_from_true = Inverse(pose);
+    round.finder.Add(FurnishedRoom().Render(camera, pose), camera, round.told_from_true * pose);
+  }
+  return round;
+}
+
+// Also in a world whose z lies level.
+TEST(Gravity, PortraitImagesAreTakenAsTheCameraTurns) {
+  for (const double roll_rad : {0.5 * kPi, -0.5 * kPi}) {
+    const HalfRound round = TurnedHalfRound(0.2, roll_rad);
+    const auto gravity = round.finder.Find();
+    ASSERT_TRUE(gravity);
+    const Eigen::Vector3d up = round.told_from_true.rotation * Eigen::Vector3d::UnitZ();
+    EXPECT_LT(AngleDeg(gravity->up_in_world, up), 0.3);
+    EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.02);
+  }
+}
+
+// The floor's normal is 72 degrees from the images' own up.
+TEST(Gravity, ACameraThatLooksDownSteeplySeesTheFloor) {
+  const HalfRound round = TurnedHalfRound(RadFromDeg(72.0), 0.0);
+  const auto gravity = round.finder.Find();
+  ASSERT_TRUE(gravity);
+  const Eigen::Vector3d up = round.told_from_true.rotation * Eigen::Vector3d::UnitZ();
+  EXPECT_LT(AngleDeg(gravity->up_in_world, up), 0.3);
+  EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.02);
+}
+
+// As if the camera were mounted upside down: it turns about its optical axis.
+GravityFinder UpsideDownViews(const AnalyticRoom& room, double pitch_rad) {
+  const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
+  GravityFinder finder;
+  for (int i = 0; i < 12; ++i) {
+    const Pose3 pose = TiltedCamera({0.3 * std::cos(i), 0.3 * std::sin(i), kPi * i / 6.0}, kHeightM,
+                                    pitch_rad, kPi);
+    finder.Add(room.Render(camera, pose), camera, pose);
+  }
+  return finder;
+}
+
+TEST(Gravity, UpsideDownCamerasSeeTheFloorBeyondTheLowerEdge) {
+  const GravityFinder finder = UpsideDownViews(FurnishedRoom(), 0.3);
+  EXPECT_FALSE(finder.Find());
+  const auto gravity = finder.Find(true);
+  ASSERT_TRUE(gravity);
+  EXPECT_LT(AngleDeg(gravity->up_in_world, Eigen::Vector3d::UnitZ()), 0.3);
+  EXPECT_NEAR(gravity->camera_height_m, kHeightM, 0.02);
+}
+
+// A level camera sees as much of the ceiling, on which nothing stands.
+TEST(Gravity, FurnitureOnTheCeilingIsTold) {
+  const GravityFinder finder = UpsideDownViews(FurnishedRoom(), 0.0);
+  const auto ceiling = finder.Find();
+  ASSERT_TRUE(ceiling);
+  EXPECT_LT(AngleDeg(ceiling->up_in_world, -Eigen::Vector3d::UnitZ()), 0.3);
+  EXPECT_TRUE(ceiling->crowded_above);
+  const auto floor = finder.Find(true);
+  ASSERT_TRUE(floor);
+  EXPECT_LT(AngleDeg(floor->up_in_world, Eigen::Vector3d::UnitZ()), 0.3);
+  EXPECT_FALSE(floor->crowded_above);
+}
+
+// Each image is off on its own, as with wrong stamps: not by drift, and their mean is right.
+TEST(Gravity, ImagesThatScatterAreNoDrift) {
+  const PinholeCamera camera{160, 120, 120.3, 120.0, 79.5, 59.5, {}};
+  RandomStream random(5, RandomStage::kTest);
+  GravityFinder finder;
+  for (int i = 0; i < 24; ++i) {
+    const Pose3 pose = TiltedCamera({0.1, 0.0, kPi * i / 6.0}, kHeightM, 0.3, 0.0);
+    const Eigen::Vector3d off(RadFromDeg(3.0) * random.Normal(), RadFromDeg(3.0) * random.Normal(),
+                              0.0);
+    const Pose3 told{ExpRotation(off) * pose.rotation, pose.translation};
+    finder.Add(AnalyticRoom{}.Render(camera, pose), camera, told);
+  }
+  const auto gravity = finder.Find();
+  ASSERT_TRUE(gravity);
+  EXPECT_FALSE(gravity->drifts);
+  EXPECT_GT(gravity->wander_rad, RadFromDeg(3.0));
+  EXPECT_LT(gravity->error_rad, RadFromDeg(2.0));
+  EXPECT_LT(AngleDeg(gravity->up_in_world, Eigen::Vector3d::UnitZ()), 2.0);
 }
 
 // One plane through all views was 3 degrees off.
@@ -227,6 +321,24 @@ TEST(Gravity, SaysNothingWithoutAFloor) {
   // Looking up at walls and ceiling.
   EXPECT_FALSE(Views(FurnishedRoom(), Eigen::Quaterniond::Identity(), -0.7, 0.0).Find());
   EXPECT_FALSE(GravityFinder().Find());
+}
+
+TEST(SnappedUp, OnlyTheUsualAxisIsTakenForScatter) {
+  const auto snapped = [](const Eigen::Vector3d& axis, double deg, double error_deg, bool drifts) {
+    Gravity gravity;
+    gravity.up_in_world = Eigen::AngleAxisd(RadFromDeg(deg), Eigen::Vector3d::UnitX()) * axis;
+    gravity.wander_rad = RadFromDeg(8.0);
+    gravity.error_rad = RadFromDeg(error_deg);
+    gravity.drifts = drifts;
+    return SnappedUp(gravity, WorldUp::kZ) == axis;
+  };
+  const Eigen::Vector3d z = Eigen::Vector3d::UnitZ(), minus_y = -Eigen::Vector3d::UnitY();
+  EXPECT_TRUE(snapped(z, 2.9, 1.6, false));
+  EXPECT_FALSE(snapped(z, 3.1, 1.6, false));
+  EXPECT_FALSE(snapped(minus_y, 1.7, 1.6, false));
+  EXPECT_TRUE(snapped(minus_y, 1.5, 1.6, false));
+  EXPECT_TRUE(snapped(minus_y, 0.9, 0.0, false));
+  EXPECT_TRUE(snapped(minus_y, 2.9, 1.6, true));
 }
 
 TEST(WorldUp, RotationsMakeTheAxisZ) {

@@ -191,6 +191,72 @@ TEST_F(SequenceTest, UpOppositeToZIsWarnedOf) {
   EXPECT_THAT(camera_axes.source->Warnings(), testing::IsEmpty());
 }
 
+// A camera that begins by looking down steeply in its own world, whose z then points down; nothing
+// is wrong.
+TEST_F(SequenceTest, AFirstCameraThatLooksDownIsNotDoubted) {
+  const TumFolderWriter writer(folder_, Camera());
+  Trajectory poses;
+  std::vector<double> stamps_s;
+  const auto pose_of = [](int i) {
+    return TiltedCamera({0.3, 0.0, kPi * i / 6.0}, kCameraHeightM, i == 0 ? 1.3 : 0.35, 0.0);
+  };
+  const Pose3 first = Inverse(pose_of(0));
+  for (int i = 0; i < 12; ++i) {
+    stamps_s.push_back(0.125 * i);
+    writer.WriteFrame(stamps_s.back(), AnalyticRoom{}.Render(Camera().camera, pose_of(i)), nullptr);
+    poses.push_back({stamps_s.back(), first * pose_of(i)});
+  }
+  writer.Finish(stamps_s, false, poses);
+  const Sequence sequence = OpenSequence(folder_);
+  EXPECT_THAT(sequence.notes, Contains(HasSubstr("camera is 1.20 m above the floor")));
+  EXPECT_THAT(sequence.source->Warnings(), testing::IsEmpty());
+}
+
+// Left on its back for three quarters of the recording, the camera sees the ceiling and a wall.
+TEST_F(SequenceTest, WhatAStandingCameraSeesCountsOnce) {
+  for (const bool at_first : {false, true}) {
+    const TumFolderWriter writer(folder_, Camera());
+    Trajectory poses;
+    std::vector<double> stamps_s;
+    for (int i = 0; i < 96; ++i) {
+      const int walked = at_first ? i - 72 : i;
+      const bool stands = walked < 0 || walked >= 24;
+      const Pose3 pose = TiltedCamera({0.3, 0.0, stands ? 0.0 : kPi * walked / 6.0}, kCameraHeightM,
+                                      stands ? -1.4 : 0.35, 0.0);
+      stamps_s.push_back(0.125 * i);
+      writer.WriteFrame(stamps_s.back(), AnalyticRoom{}.Render(Camera().camera, pose), nullptr);
+      poses.push_back({stamps_s.back(), pose});
+    }
+    writer.Finish(stamps_s, false, poses);
+    EXPECT_THAT(OpenSequence(folder_).notes, Contains("up is z, removed 0.0 degrees")) << at_first;
+  }
+}
+
+// The remedy is named, and works.
+TEST_F(SequenceTest, UpsideDownCamerasNeedAnOption) {
+  const TumFolderWriter writer(folder_, Camera());
+  Trajectory poses;
+  std::vector<double> stamps_s;
+  const auto pose_of = [](int i) {
+    return TiltedCamera({0.3, 0.0, kPi * i / 6.0}, kCameraHeightM, 0.35, kPi);
+  };
+  const Pose3 first = Inverse(pose_of(0));
+  for (int i = 0; i < 12; ++i) {
+    stamps_s.push_back(0.125 * i);
+    writer.WriteFrame(stamps_s.back(), AnalyticRoom{}.Render(Camera().camera, pose_of(i)), nullptr);
+    poses.push_back({stamps_s.back(), first * pose_of(i)});
+  }
+  writer.Finish(stamps_s, false, poses);
+  EXPECT_THAT(OpenSequence(folder_).source->Warnings(),
+              Contains(HasSubstr("one is seen if the camera is mounted upside down: --set "
+                                 "sequence.recording.upside_down=true")));
+  SequenceOptions options;
+  options.recording.upside_down = true;
+  const Sequence sequence = OpenSequence(folder_, options);
+  EXPECT_THAT(sequence.source->Warnings(), testing::IsEmpty());
+  EXPECT_THAT(sequence.notes, Contains(HasSubstr("camera is 1.20 m above the floor")));
+}
+
 TEST_F(SequenceTest, TheFloorOfAGivenAxisIsSeen) {
   const Trajectory truth = WriteRoom();
   const Pose3 higher{Eigen::Quaterniond::Identity(), {0.0, 0.0, 0.6}};
