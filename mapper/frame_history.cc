@@ -163,10 +163,21 @@ std::optional<Anchor> AnchorOf(const FrameRecord& record, const FrameHistory& hi
   if (newest_mapped >= 0 && record.index == history.newest().index) {
     return Anchor{newest_mapped, {}};
   }
-  const FrameRecord* mapped = history.NearestMapped(record, kLoopReachFrames);
-  if (mapped == nullptr) return std::nullopt;
-  if (mapped->index == record.index) return Anchor{mapped->mapped, {}};
-  return Anchor{mapped->mapped, MotionOf(*mapped, record)};
+  if (const FrameRecord* mapped = history.NearestMapped(record, kLoopReachFrames)) {
+    if (mapped->index == record.index) return Anchor{mapped->mapped, {}};
+    return Anchor{mapped->mapped, MotionOf(*mapped, record)};
+  }
+  const FrameRecord& newest = history.newest();
+  const bool is_near = newest.epoch == record.epoch && &newest - &record <= kLoopReachFrames;
+  if (newest_mapped < 0 || !newest.slam_from_camera || !is_near) return std::nullopt;
+  return Anchor{newest_mapped, MotionOf(newest, record)};
+}
+
+// Whether the next frame, if mapped, can stand in for this one, and none does now.
+bool WaitsForAnchor(const FrameRecord& record, const FrameHistory& history) {
+  const FrameRecord& newest = history.newest();
+  return newest.epoch == record.epoch && &newest - &record < kLoopReachFrames &&
+         history.NearestMapped(record, kLoopReachFrames) == nullptr;
 }
 
 }  // namespace
@@ -218,6 +229,20 @@ std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistor
   planar.sigma_translation_m = loop.sigma_translation_m;
   planar.sigma_yaw_rad = loop.sigma_rotation_rad;
   return planar;
+}
+
+bool MayBeProjectedLater(const LoopClosure& loop, const FrameHistory& history) {
+  bool waits = false;
+  for (const int end : {loop.first_frame, loop.second_frame}) {
+    const FrameRecord* record = history.Find(end);
+    if (record == nullptr || !record->slam_from_camera) return false;
+    if (WaitsForAnchor(*record, history)) {
+      waits = true;
+    } else if (history.NearestMapped(*record, kLoopReachFrames) == nullptr) {
+      return false;
+    }
+  }
+  return waits;
 }
 
 Pose3 CameraPose(const FrameRecord& record, const Pose2& map_from_slam, const StandBlend& stands) {

@@ -91,6 +91,10 @@ double ShareOfGap(double gap_s);
 std::optional<PlanarLoop> ProjectLoop(const LoopClosure& loop, const FrameHistory& history,
                                       int newest_mapped);
 
+// Of a loop that ProjectLoop() does not convert now: whether it may once a later frame is mapped,
+// as where SLAM begins an epoch at a frame without an image. For at most 30 frames.
+bool MayBeProjectedLater(const LoopClosure& loop, const FrameHistory& history);
+
 // A frame's camera pose in the map: SLAM's pose with the planar correction, height and tilt blended
 // with those over the tracked floor, if any.
 Pose3 CameraPose(const FrameRecord& record, const Pose2& map_from_slam, const StandBlend& stands);

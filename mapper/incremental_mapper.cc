@@ -150,7 +150,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
     report.loops_rejected = static_cast<int>(frame.loops.size());
     return;
   }
-  if (frame.loops.empty()) {
+  if (frame.loops.empty() && !loop_closer.waits()) {
     if (rounds.BeginIfDue(mapped.size() - mapped.standing() - prior_frames)) {
       const std::optional<MotionSpread> spread = AdjustBetweenFrames();
       if (spread && beginning.lasts() && AwaitsSpread()) GoThroughAgain(frame, *spread);

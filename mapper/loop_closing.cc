@@ -38,11 +38,14 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
                                       const std::vector<MappedFrame>& frames, bool newest_is_last,
                                       ReferenceMap& reference, std::span<const int> asked) {
   Outcome outcome;
-  if (!options_.use || events.empty()) return outcome;
+  if (!options_.use) return outcome;
   const int newest_mapped = newest_is_last ? static_cast<int>(frames.size()) - 1 : -1;
   const std::size_t known = loops_.size();
-  for (const LoopClosure& event : events) {
+  std::vector<LoopClosure> due = std::exchange(waiting_, {});
+  due.insert(due.end(), events.begin(), events.end());
+  for (const LoopClosure& event : due) {
     std::optional<PlanarLoop> loop = ProjectLoop(event, history, newest_mapped);
+    if (!loop && MayBeProjectedLater(event, history)) waiting_.push_back(event);
     if (!loop) continue;
     loop = BetweenKept(*loop, frames);
     if (!loop) continue;
@@ -62,7 +65,7 @@ LoopCloser::Outcome LoopCloser::Close(const std::vector<LoopClosure>& events,
       outcome.accepted += adjustment.loop_accepted[i] ? 1 : 0;
     }
   }
-  outcome.rejected = static_cast<int>(events.size()) - outcome.accepted;
+  outcome.rejected = static_cast<int>(due.size() - waiting_.size()) - outcome.accepted;
   return outcome;
 }
 

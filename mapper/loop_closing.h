@@ -49,7 +49,8 @@ class LoopCloser {
     std::vector<PlanarLoop> held;  // all loops accepted by the adjustment, old ones included
   };
   // `frames`: the mapped frames; the newest input frame may be the last of them, provisionally, to
-  // be placed by its loops (`newest_is_last`).
+  // be placed by its loops (`newest_is_last`). Loops at a frame near which nothing is mapped yet
+  // wait for later calls, and count as neither accepted nor rejected until then.
   Outcome Close(const std::vector<LoopClosure>& events, const FrameHistory& history,
                 const std::vector<MappedFrame>& frames, bool newest_is_last,
                 ReferenceMap& reference, std::span<const int> asked);
@@ -64,12 +65,14 @@ class LoopCloser {
     return reference.Adjust(frames, loops_, effort, asked);
   }
   const std::vector<PlanarLoop>& loops() const { return loops_; }
+  bool waits() const { return !waiting_.empty(); }
 
  private:
   AdjustEffort EffortFor(const std::vector<MappedFrame>& frames, AdjustEffort wanted) const;
 
   LoopOptions options_;
   std::vector<PlanarLoop> loops_;
+  std::vector<LoopClosure> waiting_;
 };
 
 }  // namespace depthgrid

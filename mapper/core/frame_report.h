@@ -65,7 +65,7 @@ struct FrameReport {
   Eigen::Matrix3d motion_covariance = Eigen::Matrix3d::Zero();
   bool innovation_rejected = false;  // the gate refused the match
   int beams = 0;                     // beams with a hit in the matched scan
-  int loops_accepted = 0;            // loop events of this frame that entered the graph
+  int loops_accepted = 0;            // loop events that entered the graph with this frame
   int loops_rejected = 0;
   bool slipped = false;    // SLAM's motion to here contradicted the scan and was corrected
   bool relocated = false;  // the frames since a loss of SLAM were moved to where they belong

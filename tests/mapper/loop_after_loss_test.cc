@@ -56,6 +56,40 @@ TEST(LoopAfterLoss, EndsTheGuess) {
   }
 }
 
+// SLAM closes a loop, and begins an epoch, at frames whose images are lost.
+TEST(LoopWithoutImage, IsTakenWithTheNextImage) {
+  constexpr int kLoopAt = 240, kFrames = 280;
+  const Pose2 drift{0.15, -0.1, 0.05};
+  for (const int lost : {0, 1, 3}) {
+    IncrementalMapper mapper({}, std::nullopt);
+    int rejected = 0;
+    for (int i = 0; i < kFrames; ++i) {
+      Frame frame;
+      frame.index = i;
+      frame.stamp_s = i / 30.0;
+      const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
+      const Pose2 truth = RoundTheTable(i);
+      if (i < kLoopAt || i >= kLoopAt + lost) {
+        frame.scan = std::make_shared<const Scan>(
+            ScanOf(FurnishedRoom(), truth, laser, 4, static_cast<std::uint32_t>(i)));
+      }
+      frame.slam_epoch = i < kLoopAt ? 0 : 1;
+      frame.slam_from_camera = CameraOf(i < kLoopAt ? truth : drift * truth, 1.0);
+      if (i == kLoopAt) {
+        LoopClosure loop;
+        loop.reported_at_frame = loop.second_frame = i;
+        loop.first_from_second = Between(CameraOf(RoundTheTable(0), 1.0), CameraOf(truth, 1.0));
+        frame.loops = {loop};
+      }
+      const FrameReport report = mapper.AddFrame(frame);
+      EXPECT_EQ(report.loops_accepted, i == kLoopAt + lost ? 1 : 0) << lost << ' ' << i;
+      rejected += report.loops_rejected;
+    }
+    EXPECT_EQ(rejected, 0) << lost;
+    EXPECT_FALSE(mapper.Finish().loops.empty()) << lost;
+  }
+}
+
 // The other half of a room, never seen before, and a loop with its first frame.
 TEST(LoopAfterLoss, OfTheVeryFrameLeavesNoGuess) {
   constexpr int kBack = 90, kFrames = 120;

@@ -137,6 +137,49 @@ TEST(ProjectLoop, SoDoesItsSecondEnd) {
   ExpectNear(loop->first_from_second, measured * Between(slam[2], slam[1]), 1e-12);
 }
 
+// SLAM begins an epoch at a frame without an image: the next mapped one of that epoch stands in.
+TEST(ProjectLoop, WaitsForTheFirstMappedFrameOfAnEpoch) {
+  const std::vector<Pose2> slam = {{0, 0, 0}, {0.1, 0, 0.1}, {0.2, 0.1, 0.2}, {0.3, 0.1, 0.3}};
+  const Pose2 measured{0.5, 0.1, -0.2};
+  const LoopClosure event = CameraLoop(0, 2, measured);
+  FrameHistory history;
+  for (int i = 0; i < 3; ++i) {
+    history.Start(PosedFrame(i, slam[static_cast<std::size_t>(i)], i / 2));
+    if (i < 2) history.newest().mapped = i;
+  }
+  EXPECT_FALSE(ProjectLoop(event, history, -1));
+  EXPECT_TRUE(MayBeProjectedLater(event, history));
+  EXPECT_FALSE(MayBeProjectedLater(CameraLoop(0, 1, measured), history));   // it can be now
+  EXPECT_FALSE(MayBeProjectedLater(CameraLoop(0, 17, measured), history));  // never came
+  history.Start(PosedFrame(3, slam[3], 1));
+  const auto loop = ProjectLoop(event, history, 2);
+  ASSERT_TRUE(loop);
+  EXPECT_EQ(loop->second, 2);
+  ExpectNear(loop->first_from_second, measured * Between(slam[2], slam[3]), 1e-12);
+}
+
+TEST(ProjectLoop, WaitsForThirtyFrames) {
+  FrameHistory history;
+  history.Start(PosedFrame(0, {}, 0));
+  history.newest().mapped = 0;
+  const LoopClosure event = CameraLoop(0, 1, {0.5, 0.0, 0.0});
+  for (int i = 1; i < 40; ++i) {
+    history.Start(PosedFrame(i, {0.1 * i, 0.0, 0.0}, 1));
+    EXPECT_EQ(MayBeProjectedLater(event, history), i <= 30) << i;
+    EXPECT_EQ(ProjectLoop(event, history, 1).has_value(), i <= 31) << i;
+  }
+}
+
+// A new epoch ends the waiting: no motion leads from there to the loop's frame.
+TEST(ProjectLoop, DoesNotWaitBeyondTheEpoch) {
+  FrameHistory history;
+  history.Start(PosedFrame(0, {}, 0));
+  history.newest().mapped = 0;
+  history.Start(PosedFrame(1, {}, 1));
+  history.Start(PosedFrame(2, {}, 2));
+  EXPECT_FALSE(MayBeProjectedLater(CameraLoop(0, 1, {0.5, 0.0, 0.0}), history));
+}
+
 TEST(FrameHistory, RefusesAnIndexTwice) {
   FrameHistory history;
   history.Start(PosedFrame(3, {}, 0));
