@@ -15,10 +15,12 @@ constexpr CrossedWallsSample kDoubledSample{300, 80};
 
 // A loop from a scan that leads through many walls to another time at which its place was seen, if
 // one is found that asks for a correction (`search.min_correction_*`). `crossed`: of the map drawn
-// from these frames.
+// from these frames. `guessed_from`: the first frame of a part whose place is a guess, to which
+// none leads: it may lie anywhere, not only as near as what drift shows twice.
 std::optional<PlanarLoop> LoopOfDoubledWalls(const std::vector<MappedFrame>& frames,
                                              std::vector<CrossedWalls> crossed,
                                              const LoopSearchOptions& search,
-                                             const OverlapOptions& overlap);
+                                             const OverlapOptions& overlap,
+                                             const std::optional<int>& guessed_from = {});
 
 }  // namespace depthgrid

@@ -229,7 +229,7 @@ void IncrementalMapper::State::MovePart(int first, const Pose2& motion) {
 // Moves all frames mapped since the loss once the search has found their place.
 void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
-  if (!relocation.active() || !(report.inserted || report.well_seen)) return;
+  if (!relocation.unsettled() || !(report.inserted || report.well_seen)) return;
   const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
   if (!moved) return;
   MovePart(relocation.first_frame(), *moved);
@@ -348,8 +348,8 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   // Frames that loops refer to are always kept.
   const bool ends_loops = report.loops_accepted + report.loops_rejected > 0;
   if (ends_loops) explained.reset();
-  // During the search after a loss, do not tie to frames from before it.
-  const int from = relocation.active() ? relocation.first_frame() : 0;
+  // Until the place after a loss is known, do not tie to frames from before it.
+  const int from = relocation.unsettled() ? relocation.first_frame() : 0;
   const bool matches = reference && report.match.found;
   const auto matched = matches ? reference->MatchedParts() : std::span<const MapPart>();
   const MappedFrame& added = mapped.Add(std::move(frame), scans, explained, matched, from);

@@ -75,8 +75,11 @@ void IncrementalMapper::State::JoinDoubledWalls(FinalEstimate& final) const {
   std::vector<MappedFrame> frames = WithPoses(mapped.all(), final.map_from_base);
   final.map = Draw(frames);
   std::vector<CrossedWalls> crossed = WallsCrossed(frames, *final.map, kDoubledSample);
+  std::optional<int> guessed_from;
+  if (relocation.unsettled()) guessed_from = relocation.first_frame();
   for (int joined = 0; joined < kMostJoins && CrossingShare(crossed) >= kDoubledShare; ++joined) {
-    auto loop = LoopOfDoubledWalls(frames, crossed, options.loops.search, options.loops.overlap);
+    auto loop = LoopOfDoubledWalls(frames, crossed, options.loops.search, options.loops.overlap,
+                                   guessed_from);
     if (!loop) return;
     loop->on_trial = true;
     loops.push_back(*loop);

@@ -18,10 +18,10 @@ constexpr std::size_t kOldForEach = 2;
 
 }  // namespace
 
-std::vector<int> OldFrames(const std::vector<MappedFrame>& frames, int end, const Pose2& around,
-                           double reach_m) {
+std::vector<int> ViewsWithin(const std::vector<MappedFrame>& frames, int begin, int end,
+                             const Pose2& around, double reach_m) {
   std::vector<int> old;
-  for (int i = 0; i < end; ++i) {
+  for (int i = begin; i < end; ++i) {
     if (!frames[static_cast<std::size_t>(i)].scan) continue;
     const Pose2& pose = PoseAt(frames, i);
     if ((pose.translation() - around.translation()).norm() > reach_m) continue;

@@ -33,6 +33,15 @@ constexpr double kStepM = 0.5;
 constexpr double kStepRad = 0.5;
 constexpr double kTurnRadps = 2.0;
 
+// Growth of the interval with each of the rarer searches that finds nothing, and its largest turn.
+// Chosen: 30 m of path are searched 30 times, each further 30 m ten times.
+constexpr double kRarer = 1.1;
+constexpr double kRarestRad = kPi;
+// How far around the newest frame, and with how many scans at most, the new part is compared with
+// what was seen before: grids of 30 MB with a laser that reaches 12 m.
+constexpr double kPartM = 30.0;
+constexpr int kMostOfPart = 100;
+
 }  // namespace
 
 void RelocationOptions::Visit(OptionsVisitor& v) {
@@ -52,7 +61,7 @@ void RelocationOptions::Visit(OptionsVisitor& v) {
   v.NotMore("window_m", window_m, "max_window_m", max_window_m);
   v.Number("every_m", every_m, {0.01, 100.0}, "distance travelled between two searches");
   v.Number("every_deg", every_deg, {1.0, 360.0}, "or turn between two searches");
-  v.Number("most_searches", most_searches, {1, 1e6}, "searches before the guess is left as it is");
+  v.Number("most_searches", most_searches, {1, 1e6}, "searches before they become rarer");
   v.Group("place", place, "what is searched for together");
   v.Number("min_score", min_score, {0.01, 1.0}, "share of the points that must lie on walls");
   v.Number("max_second_score", max_second_score, {0.01, 1.0},
@@ -98,13 +107,14 @@ bool Relocation::BeginIfDoubtful(double share, int next_frame) {
   // A loop reported with this frame already determines its place.
   if (IsUsual(share) || IsJoinedAt(next_frame)) return false;
   active_ = true;
-  gave_up_ = false;
+  rare_ = false;
   first_frame_ = next_frame;
   lost_s_ = lost_s;
   way_m_ = turn_rad_ = 0.0;
   next_m_ = options_.every_m;
   next_rad_ = RadFromDeg(options_.every_deg);
   searches_ = 0;
+  rarity_ = 1.0;
   recent_share_ = 0.0;
   waiting_.reset();
   agreed_ = 0;
@@ -120,7 +130,7 @@ bool Relocation::IsJoinedAt(int frame) const {
 
 void Relocation::Joined(const std::vector<PlanarLoop>& loops) {
   held_ = loops;
-  if (IsJoinedAt(first_frame_)) active_ = gave_up_ = false;
+  if (IsJoinedAt(first_frame_)) active_ = rare_ = false;
 }
 
 void Relocation::GuessMoved() {
@@ -143,33 +153,67 @@ bool Relocation::IsSame(const Pose2& a, const Pose2& b, const Pose2& map_from_ba
          std::abs(off.yaw_rad) < RadFromDeg(options_.consent_deg);
 }
 
-std::optional<Pose2> Relocation::Find(const std::vector<MappedFrame>& frames,
-                                      const std::shared_ptr<const Scan>& newest,
-                                      ReferenceMap& reference) {
+bool Relocation::IsDue(const std::vector<MappedFrame>& frames) {
   const int last = static_cast<int>(frames.size()) - 1;
-  if (GuessIsRight(frames, newest, reference)) {
-    active_ = false;
-    return std::nullopt;
-  }
   if (last > first_frame_) {
     const Pose2 step = Between(PoseAt(frames, last - 1), PoseAt(frames, last));
     way_m_ += step.translation().norm();
     turn_rad_ += std::abs(step.yaw_rad);
   }
-  if (way_m_ < next_m_ && turn_rad_ < next_rad_) return std::nullopt;
-  next_m_ = way_m_ + options_.every_m;
-  next_rad_ = turn_rad_ + RadFromDeg(options_.every_deg);
-  const std::optional<Pose2> found = Search(frames);
-  const bool same = found && waiting_ && IsSame(*waiting_, *found, PoseAt(frames, last));
-  agreed_ = found ? (same ? agreed_ + 1 : 1) : 0;
-  waiting_ = found;
-  if (agreed_ >= options_.consenting) {
+  return way_m_ >= next_m_ || turn_rad_ >= next_rad_;
+}
+
+void Relocation::SetNext() {
+  if (rare_ && agreed_ == 0) rarity_ *= kRarer;
+  const double rarest_m = std::max(options_.every_m, options_.place.reach_m);
+  const double rarest_rad = std::max(RadFromDeg(options_.every_deg), kRarestRad);
+  next_m_ = way_m_ + std::min(rarity_ * options_.every_m, rarest_m);
+  next_rad_ = turn_rad_ + std::min(rarity_ * RadFromDeg(options_.every_deg), rarest_rad);
+}
+
+// The more is searched, the likelier a false place is found.
+bool Relocation::IsAgreed() const {
+  const double least_m = rare_ ? options_.place.reach_m : 0.0;
+  return agreed_ >= options_.consenting && way_m_ - agreed_from_m_ >= least_m;
+}
+
+std::optional<Pose2> Relocation::Find(const std::vector<MappedFrame>& frames,
+                                      const std::shared_ptr<const Scan>& newest,
+                                      ReferenceMap& reference) {
+  if (active_ && GuessIsRight(frames, newest, reference)) {
     active_ = false;
+    return std::nullopt;
+  }
+  if (!IsDue(frames)) return std::nullopt;
+  const std::optional<Pose2> found = Search(frames);
+  const bool same = found && waiting_ && IsSame(*waiting_, *found, frames.back().map_from_base);
+  agreed_ = found ? (same ? agreed_ + 1 : 1) : 0;
+  if (!same) agreed_from_m_ = way_m_;
+  waiting_ = found;
+  if (IsAgreed() && WholePartAgrees(frames, *found)) {
+    active_ = rare_ = false;
     return found;
   }
-  gave_up_ = ++searches_ >= options_.most_searches;
-  active_ = !gave_up_;
+  rare_ = ++searches_ >= options_.most_searches;
+  active_ = !rare_;
+  SetNext();
   return std::nullopt;
+}
+
+bool Relocation::WholePartAgrees(const std::vector<MappedFrame>& frames, const Pose2& shift) const {
+  const int end = static_cast<int>(frames.size());
+  const Pose2& newest = PoseAt(frames, end - 1);
+  const std::vector<int> part =
+      EvenlySpread(ViewsWithin(frames, first_frame_, end, newest, kPartM), kMostOfPart);
+  const std::vector<int> old = OldFrames(frames, first_frame_, shift * newest, kPartM + kSightM);
+  if (part.empty() || old.empty()) return false;
+  const std::vector<int> near = SeenFromNear(frames, old, part, shift);
+  PlanarLoop loop;
+  loop.first = near.front();
+  loop.second = part.back();
+  loop.first_from_second = Between(PoseAt(frames, loop.first), shift * PoseAt(frames, loop.second));
+  const Overlap overlap = OverlapOf(frames, near, part, loop, overlap_);
+  return Agrees(overlap, overlap_) && overlap.agreement() >= options_.min_agreement;
 }
 
 std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames) const {

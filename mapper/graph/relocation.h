@@ -35,12 +35,14 @@ struct RelocationOptions {
   // Path length or turn between searches, after which something new is in view.
   double every_m = 0.5;
   double every_deg = 30.0;
+  // After so many searches they become rarer, and consent is asked for over place.reach_m of path.
   int most_searches = 12;
   // The scans since the loss, as far back as this, are matched together.
   PlaceOptions place = {.reach_m = 3.0, .turn_deg = 360.0, .max_scans = 24};
   double min_score = 0.8;          // least score of the search, 0..1
   double max_second_score = 0.85;  // greatest share of the score of any pose elsewhere
-  // Least agreement of what was seen before and since. Right places reach 0.997 and more, similar
+  // Least agreement of what was seen before and since, of the place and of all that was seen since.
+  // Right places reach 0.997 and more, similar
   // offices 0.966, two rectangular rooms 0.992 (docs/results.md, "Lost and found").
   double min_agreement = 0.995;
   // Number of consecutive searches that must agree, to consent_m and consent_deg.
@@ -56,7 +58,7 @@ class Relocation {
   // `gates`: the limits for loops, by which two places are tested.
   Relocation(const RelocationOptions& options, const LoopSearchOptions& gates,
              const OverlapOptions& overlap)
-      : options_(options), matcher_(gates, overlap) {}
+      : options_(options), overlap_(overlap), matcher_(gates, overlap) {}
 
   // Adds the explained share of a matched frame in normal operation.
   void Explained(double share);
@@ -73,8 +75,8 @@ class Relocation {
   bool IsUsual(double share) const { return share >= options_.min_share * usual_share_; }
   double usual_share() const { return usual_share_; }
   bool active() const { return active_; }
-  // Whether the place after the last loss is still a guess, searched for or given up.
-  bool unsettled() const { return active_ || gave_up_; }
+  // Whether the place after the last loss is still a guess, searched for often (active) or rarely.
+  bool unsettled() const { return active_ || rare_; }
   int first_frame() const { return first_frame_; }
 
   // Call after an adjustment with these loops: one that joins frames before and after the loss ends
@@ -84,9 +86,9 @@ class Relocation {
   // Call when all frames since first_frame() were moved to another guess.
   void GuessMoved();
 
-  // Call after each frame mapped while active: returns the correction (new map from map) of all
-  // frames from first_frame() on, once found. The search ends then, when the guess proves right, or
-  // after too many searches.
+  // Call after each frame mapped while unsettled: returns the correction (new map from map) of all
+  // frames from first_frame() on, once found. The search ends then, or when the guess proves right
+  // during the first searches.
   std::optional<Pose2> Find(const std::vector<MappedFrame>& frames,
                             const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
 
@@ -96,16 +98,21 @@ class Relocation {
   bool GuessIsRight(const std::vector<MappedFrame>& frames,
                     const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
   bool IsSame(const Pose2& a, const Pose2& b, const Pose2& map_from_base) const;
+  bool IsDue(const std::vector<MappedFrame>& frames);
+  void SetNext();
+  bool IsAgreed() const;
   std::optional<Pose2> Search(const std::vector<MappedFrame>& frames) const;
+  bool WholePartAgrees(const std::vector<MappedFrame>& frames, const Pose2& shift) const;
 
   RelocationOptions options_;
+  OverlapOptions overlap_;
   PlaceMatcher matcher_;
   double usual_share_ = 0.0;
   int explained_frames_ = 0;  // frames in that mean, at most kUsualFrames
   double unjudged_s_ = 0.0;   // the longest loss since the last scan
   bool unjudged_ = false;     // whether that loss makes the guess doubtful
   bool active_ = false;
-  bool gave_up_ = false;
+  bool rare_ = false;
   int first_frame_ = 0;
   std::vector<PlanarLoop> held_;  // loops of the last adjustment with loops
   double lost_s_ = 0.0;
@@ -114,9 +121,11 @@ class Relocation {
   double turn_rad_ = 0.0;
   double next_rad_ = 0.0;
   int searches_ = 0;
+  double rarity_ = 1.0;        // interval of searches as a multiple of the first
   double recent_share_ = 0.0;  // running mean share of new scans on surfaces seen before the loss
   std::optional<Pose2> waiting_;  // result of the last search
   int agreed_ = 0;                // consecutive searches that found it
+  double agreed_from_m_ = 0.0;    // path length at the first of them
 };
 
 }  // namespace depthgrid

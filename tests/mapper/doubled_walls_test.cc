@@ -62,6 +62,14 @@ TEST(DoubledWalls, ALoopTellsHowFarTheSecondOnesAreOff) {
   }
 }
 
+// After a loss of SLAM whose place was not found the second walls may be anywhere.
+TEST(DoubledWalls, AreNotJoinedWithAPartWhosePlaceIsAGuess) {
+  const std::vector<MappedFrame> frames = TwiceThere({0.5, -0.4, 0.02});
+  const std::vector<CrossedWalls> crossed = WallsCrossed(frames, MapOf(frames), kDoubledSample);
+  EXPECT_FALSE(LoopOfDoubledWalls(frames, crossed, {}, {}, 80).has_value());
+  EXPECT_TRUE(LoopOfDoubledWalls(frames, crossed, {}, {}, 0).has_value());
+}
+
 TEST(DoubledWalls, OfRightPosesThereAreNone) {
   const std::vector<MappedFrame> frames = TwiceThere({});
   const std::vector<CrossedWalls> crossed = WallsCrossed(frames, MapOf(frames), kDoubledSample);
