@@ -144,12 +144,11 @@ void CheckPoses(const MapArguments& arguments, const Sequence& sequence,
 }
 
 // Warns of a wrong up axis: its map is a vertical section of the room, but looks like a map.
-void CheckUp(const Config& config, const Sequence& sequence, std::vector<std::string>& warnings) {
+void CheckUp(const Config& config, const Sequence& sequence, const RecordingOptions& options,
+             std::vector<std::string>& warnings) {
   if (!sequence.up_doubt) return;
-  const char* upside_down = "; if the camera is mounted upside down, that is the ceiling";
-  warnings.push_back(fmt::format("{}: the floor seen in the images says {}, if they are upright{}",
-                                 config.PlaceOfKey("sequence.world_up"), sequence.up_doubt->up,
-                                 sequence.up_doubt->opposite ? upside_down : ""));
+  warnings.push_back(config.PlaceOfKey("sequence.world_up") + ": " +
+                     UpDoubtText(*sequence.up_doubt, options));
 }
 
 // Warns of poses in a world whose floor is not at height 0.
@@ -304,7 +303,7 @@ std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest
   const MapSettings& settings = request.settings;
   std::vector<std::string> warnings = run.warnings;
   CheckPoses(arguments, input, warnings);
-  CheckUp(request.config, input, warnings);
+  CheckUp(request.config, input, settings.sequence.recording, warnings);
   CheckFloor(arguments, input, settings.mapper.scan, run, warnings);
   const std::vector<std::string> doubts = DoubtsOfSettings(given, request);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());

@@ -1,5 +1,7 @@
 #include "mapper/io/recording_options.h"
 
+#include <fmt/format.h>
+
 namespace depthgrid {
 
 void RecordingOptions::Visit(OptionsVisitor& v) {
@@ -23,6 +25,11 @@ void RecordingOptions::Visit(OptionsVisitor& v) {
          "leave out what stays nearer than 1 m while the camera turns: the robot's own body");
   v.Flag("upside_down", upside_down,
          "whether the camera is mounted upside down; for finding up, the images stay as they are");
+}
+
+std::string OtherMount(const RecordingOptions& options) {
+  return fmt::format("the camera is mounted {} (--set sequence.recording.upside_down={})",
+                     options.upside_down ? "upright" : "upside down", !options.upside_down);
 }
 
 }  // namespace depthgrid

@@ -1,6 +1,7 @@
 // Options of recorded depth sequences, for all folder layouts.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mapper/core/options.h"
@@ -40,5 +41,9 @@ struct RecordingOptions {
 
   void Visit(OptionsVisitor& v);
 };
+
+// "the camera is mounted upside down (--set sequence.recording.upside_down=true)", of a camera that
+// is not mounted as the options say.
+std::string OtherMount(const RecordingOptions& options);
 
 }  // namespace depthgrid

@@ -110,15 +110,14 @@ bool WorldIsFirstCamera(const SlamOutput& slam) {
          LogRotation(first->slam_from_camera->rotation).norm() < kIsIdentityRad;
 }
 
-std::string NoFloorWarning(const DepthSequence& sequence, RecordingOptions options) {
+std::string NoFloorWarning(const DepthSequence& sequence, const RecordingOptions& options) {
   const std::string taken =
       fmt::format("no floor seen in the images, {} is taken as up (--up says another axis)",
                   NameOf(sequence.usual_up));
-  options.upside_down = !options.upside_down;
-  if (!FindGravity(sequence, options)) return taken;
-  return fmt::format(
-      "{}; one is seen if the camera is mounted {}: --set sequence.recording.upside_down={}", taken,
-      options.upside_down ? "upside down" : "upright", options.upside_down);
+  RecordingOptions other = options;
+  other.upside_down = !options.upside_down;
+  if (!FindGravity(sequence, other)) return taken;
+  return fmt::format("{}; one is seen if {}", taken, OtherMount(options));
 }
 
 // Warns of an up that the images leave open.
@@ -128,15 +127,13 @@ void DoubtUp(const std::string& path, const RecordingOptions& options, const Gra
   const bool is_minus_z = up == AxisOf(WorldUp::kMinusZ);
   if (is_minus_z || (-up.z() > kSureOfOpposite && !WorldIsFirstCamera(sequence.slam))) {
     warnings.push_back(fmt::format(
-        "{}: up is {}, right if z of the poses' world points down{}; if the camera is mounted "
-        "upside down, the ceiling is taken for the floor and the map is mirrored, and --up z is "
-        "right; poses of a left-handed world have no right axis",
-        path, ShownUp(up), is_minus_z ? " (--up -z says so)" : ""));
+        "{}: up is {}, right if z of the poses' world points down{}; if {}, the ceiling is taken "
+        "for the floor and the map is mirrored; poses of a left-handed world have no right axis",
+        path, ShownUp(up), is_minus_z ? " (--up -z says so)" : "", OtherMount(options)));
   } else if (gravity.crowded_above) {
-    warnings.push_back(fmt::format(
-        "{}: things stand on what is taken for the ceiling: if the camera is mounted {}, the map "
-        "is mirrored, and --set sequence.recording.upside_down={} is right",
-        path, options.upside_down ? "upright" : "upside down", !options.upside_down));
+    warnings.push_back(
+        fmt::format("{}: things stand on what is taken for the ceiling: if {}, the map is mirrored",
+                    path, OtherMount(options)));
   }
   if (gravity.floor_is_late) {
     warnings.push_back(path +
@@ -204,6 +201,13 @@ void SayPart(const FrameNames& names, std::vector<std::string>& notes) {
 }
 
 }  // namespace
+
+std::string UpDoubtText(const UpDoubt& doubt, const RecordingOptions& options) {
+  const std::string ceiling =
+      doubt.opposite ? fmt::format("; if {}, that is the ceiling", OtherMount(options)) : "";
+  return fmt::format("the floor seen in the images says {}, if they are {}{}", doubt.up,
+                     options.upside_down ? "upside down" : "upright", ceiling);
+}
 
 SequenceFormat DetectFormat(const std::string& path) {
   std::error_code ignored;  // such as for a name that is too long

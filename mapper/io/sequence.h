@@ -17,8 +17,9 @@ namespace depthgrid {
 // Up according to the floor in the images, if a different axis was given.
 struct UpDoubt {
   std::string up;         // "z", "-y" or a direction
-  bool opposite = false;  // to the given axis; also if the camera is mounted upside down
+  bool opposite = false;  // to the given axis; also if the camera is mounted the other way up
 };
+std::string UpDoubtText(const UpDoubt& doubt, const RecordingOptions& options);
 
 struct Sequence {
   std::unique_ptr<FrameSource> source;

@@ -175,7 +175,9 @@ TEST_F(ProgramFormats, AnAxisThatIsNotUpIsWarnedOf) {
                         "are upright\n"));
   EXPECT_THAT(ReadFile(Path("out/warnings.txt")), HasSubstr("--up x: the floor"));
   EXPECT_THAT(said("--set sequence.world_up=-z"),
-              HasSubstr("warning: --set sequence.world_up=-z: the floor"));
+              HasSubstr("warning: --set sequence.world_up=-z: the floor seen in the images says z, "
+                        "if they are upright; if the camera is mounted upside down (--set "
+                        "sequence.recording.upside_down=true), that is the ceiling\n"));
 }
 
 TEST_F(ProgramFormats, PosesThatMeanSomethingElseAreNamed) {

@@ -248,13 +248,26 @@ TEST_F(SequenceTest, UpsideDownCamerasNeedAnOption) {
   }
   writer.Finish(stamps_s, false, poses);
   EXPECT_THAT(OpenSequence(folder_).source->Warnings(),
-              Contains(HasSubstr("one is seen if the camera is mounted upside down: --set "
-                                 "sequence.recording.upside_down=true")));
+              Contains(HasSubstr("one is seen if the camera is mounted upside down (--set "
+                                 "sequence.recording.upside_down=true)")));
   SequenceOptions options;
   options.recording.upside_down = true;
   const Sequence sequence = OpenSequence(folder_, options);
   EXPECT_THAT(sequence.source->Warnings(), testing::IsEmpty());
   EXPECT_THAT(sequence.notes, Contains(HasSubstr("camera is 1.20 m above the floor")));
+}
+
+// Each remedy is of the mount that is not set.
+TEST_F(SequenceTest, UpsideDownOfAnUprightCameraIsWarnedOf) {
+  WriteRoom();
+  SequenceOptions options;
+  options.recording.upside_down = true;
+  const std::string upright =
+      "if the camera is mounted upright (--set sequence.recording.upside_down=false)";
+  EXPECT_THAT(OpenSequence(folder_, options).source->Warnings(), Contains(HasSubstr(upright)));
+  EXPECT_EQ(UpDoubtText({"-z", true}, options.recording),
+            "the floor seen in the images says -z, if they are upside down; " + upright +
+                ", that is the ceiling");
 }
 
 TEST_F(SequenceTest, TheFloorOfAGivenAxisIsSeen) {
