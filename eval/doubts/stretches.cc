@@ -26,12 +26,16 @@ std::vector<Stretch> StretchesOf(const MappingRun& run,
   Pose2 slam_begin, map_begin, slam_last, map_last;
   SlamEpochs epochs;
   int last_epoch = 0;
+  bool last_guessed = false;
   for (std::size_t i = 0; i < run.reports.size(); ++i) {
     const auto& slam_pose = run.reports[i].slam_from_camera;
     const auto& map_pose = run.result.map_from_camera[i];
     const int epoch = EpochOf(run.reports[i], epochs);
-    if (!slam_pose || !map_pose || epoch != last_epoch) stretch.reset();
+    const bool guessed = run.reports[i].guessed;
+    const bool begins_part = epoch != last_epoch || (guessed && !last_guessed);
+    if (!slam_pose || !map_pose || begins_part) stretch.reset();
     last_epoch = epoch;
+    last_guessed = guessed;
     if (!slam_pose || !map_pose) continue;
     const Pose2 slam = BaseOf(*slam_pose);
     const Pose2 map = BaseOf(*map_pose);

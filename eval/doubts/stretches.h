@@ -30,7 +30,7 @@ struct Stretch {
 };
 
 // Consecutive stretches, each ending when `done`. None spans a correction by SLAM, an unannounced
-// restart of its poses, or a missing pose.
+// restart of its poses, a missing pose, or a loss or pause after which the place was guessed.
 std::vector<Stretch> StretchesOf(const MappingRun& run,
                                  const std::function<bool(const Stretch&)>& done);
 

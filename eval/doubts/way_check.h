@@ -13,8 +13,7 @@ struct Ways {
   double map_m = 0.0;
 };
 
-// Summed over stretches of at least half a metre in either, none of which spans a correction by
-// SLAM (SlamEpochs) or a missing pose.
+// Summed over stretches (StretchesOf) of at least half a metre in either.
 Ways WaysOf(const MappingRun& run);
 
 // The lengths, if they differ so much that one of the scales must be wrong: depth images in other

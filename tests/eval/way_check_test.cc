@@ -149,6 +149,20 @@ TEST(WayCheck, TakesNoStretchAcrossPosesThatBeginAnew) {
   EXPECT_FALSE(WayDoubt(run));
 }
 
+// After a pause of the log SLAM's step does not hold, and the mapper guesses.
+TEST(WayCheck, TakesNoStretchToAPlaceThatWasGuessed) {
+  MappingRun run = Straight(60, 1.0);
+  for (std::size_t i = 0; i < run.reports.size(); ++i) {
+    FrameReport& report = run.reports[i];
+    report.stamp_s = 0.1 * static_cast<double>(i) + (i >= 30 ? 10.0 : 0.0);
+    report.guessed = i >= 30 && i < 45;
+    if (i >= 30) report.slam_from_camera->translation.y() = 25.0;
+  }
+  EXPECT_NEAR(WaysOf(run).slam_m, WaysOf(run).map_m, 1e-9);
+  EXPECT_FALSE(ScaleDoubt(run));
+  EXPECT_FALSE(WayDoubt(run));
+}
+
 TEST(WayCheck, DoubtsEitherScale) {
   EXPECT_FALSE(ScaleDoubt(Straight(60, 1.0)));
   EXPECT_FALSE(ScaleDoubt(Straight(60, 1.25)));
