@@ -42,6 +42,14 @@ macro(consume name flags)
   endif()
 endmacro()
 consume(whole "")
+# Options for C++ are not passed to other compilers (CUDA's refuses them).
+file(STRINGS ${scratch}/whole/compile_commands.json commands REGEX "-ffp-contract=off")
+if(CXX_ID MATCHES "GNU|Clang" AND NOT commands MATCHES "consumer\\.cc")
+  message(FATAL_ERROR "the library's options are not passed on to C++")
+endif()
+if(commands MATCHES "/other\\.c\"")
+  message(FATAL_ERROR "the library's options are passed on to C: ${commands}")
+endif()
 # A robot that links the mapper alone need not have what reads files.
 set(without_files -DCMAKE_DISABLE_FIND_PACKAGE_PNG=ON -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=ON
   -DCMAKE_DISABLE_FIND_PACKAGE_fmt=ON)

@@ -1,0 +1,2 @@
+// Another language in a target that links the library.
+int other(void) { return 0; }
