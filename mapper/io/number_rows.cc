@@ -104,7 +104,7 @@ void RequireSeconds(double stamp_s, const std::string& place) {
   throw InputError(
       place,
       fmt::format("the stamp is {:.6g}, must be in seconds, not in milli- or nanoseconds: "
-                  "divide all of the file by 1e{:.0f}{}",
+                  "divide all stamps of the file by 1e{:.0f}{}",
                   stamp_s, std::log10(units_a_second),
                   units_a_second == 1e3 ? ", or by 1e9 if they do not count from 1970" : ""));
 }

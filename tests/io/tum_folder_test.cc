@@ -359,11 +359,14 @@ TEST_F(TumFolderTest, StampsOfOtherUnitsAreRefusedWithTheirUnit) {
     Write("depth.txt", stamp + " depth/0.000000.png\n");
     return OpenError({PoseAt(0.0, 0.0)});
   };
-  EXPECT_THAT(said("1700000000000000000"), testing::EndsWith("nanoseconds: divide all of the file "
-                                                             "by 1e9"));
-  EXPECT_THAT(said("1700000000000000"), testing::EndsWith(": divide all of the file by 1e6"));
-  EXPECT_THAT(said("1700000000000"), testing::EndsWith(": divide all of the file by 1e3, or by 1e9 "
-                                                       "if they do not count from 1970"));
+  EXPECT_THAT(said("1700000000000000000"),
+              testing::EndsWith("nanoseconds: divide all stamps of the file "
+                                "by 1e9"));
+  EXPECT_THAT(said("1700000000000000"),
+              testing::EndsWith(": divide all stamps of the file by 1e6"));
+  EXPECT_THAT(said("1700000000000"),
+              testing::EndsWith(": divide all stamps of the file by 1e3, or by 1e9 "
+                                "if they do not count from 1970"));
 }
 
 TEST_F(TumFolderTest, OneClearLineForEachFault) {
