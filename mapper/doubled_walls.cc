@@ -95,14 +95,17 @@ std::optional<PlanarLoop> LoopOfDoubledWalls(const std::vector<MappedFrame>& fra
                                              std::vector<CrossedWalls> crossed,
                                              const LoopSearchOptions& search,
                                              const OverlapOptions& overlap,
-                                             const std::optional<int>& guessed_from) {
+                                             const std::vector<GuessedPart>& guessed) {
   const std::vector<double> way_m = WaysTo(frames);
   const PlaceMatcher matcher(search, overlap);
   for (const int query : Queries(std::move(crossed), way_m)) {
     // Places of frames nearer along the path share frames.
     for (const int candidate : Candidates(frames, way_m, query, 2.0 * search.place.reach_m)) {
       const auto [first, second] = std::minmax(candidate, query);
-      if (guessed_from && first < *guessed_from && second >= *guessed_from) continue;
+      const bool leaves_guess = std::any_of(
+          guessed.begin(), guessed.end(),
+          [&](const GuessedPart& part) { return part.IsLeftBetween(candidate, query); });
+      if (leaves_guess) continue;
       const auto loop =
           matcher.LoopBetween(frames, first, second, kWindowM, RadFromDeg(kWindowDeg));
       if (loop && Corrects(frames, *loop, search)) return loop;

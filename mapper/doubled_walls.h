@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapper/core/reference_map.h"
+#include "mapper/graph/guessed_part.h"
 #include "mapper/graph/loop_search_options.h"
 #include "mapper/grid/crossed_walls.h"
 
@@ -15,12 +16,12 @@ constexpr CrossedWallsSample kDoubledSample{300, 80};
 
 // A loop from a scan that leads through many walls to another time at which its place was seen, if
 // one is found that asks for a correction (`search.min_correction_*`). `crossed`: of the map drawn
-// from these frames. `guessed_from`: the first frame of a part whose place is a guess, to which
-// none leads: it may lie anywhere, not only as near as what drift shows twice.
+// from these frames. No loop leaves a guessed part: it may lie anywhere, not only as near as what
+// drift shows twice.
 std::optional<PlanarLoop> LoopOfDoubledWalls(const std::vector<MappedFrame>& frames,
                                              std::vector<CrossedWalls> crossed,
                                              const LoopSearchOptions& search,
                                              const OverlapOptions& overlap,
-                                             const std::optional<int>& guessed_from = {});
+                                             const std::vector<GuessedPart>& guessed = {});
 
 }  // namespace depthgrid

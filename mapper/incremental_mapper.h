@@ -16,6 +16,12 @@
 
 namespace depthgrid {
 
+// Frame::index of the first and, unless it lasts until the end, the last frame of a part.
+struct GuessedFrames {
+  int first = 0;
+  std::optional<int> last;
+};
+
 struct MapperResult {
   // The final estimate of each frame that AddFrame() accepted, in that order (refused frames have
   // no entry); empty where neither SLAM nor the map gave a pose.
@@ -23,6 +29,8 @@ struct MapperResult {
   // The frames whose scans are kept, at final poses: the map is drawn from these.
   std::vector<MappedFrame> mapped;
   std::vector<PlanarLoop> loops;  // those that the final adjustment accepted
+  // What was mapped after a loss of SLAM and neither the search nor a loop placed.
+  std::vector<GuessedFrames> guessed;
   OccupancyMap map;
 };
 

@@ -29,7 +29,14 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
   MapperResult result;
   result.map_from_camera = std::move(final.map_from_camera);
   result.loops = std::move(final.loops);
-  result.mapped = KeptFrames(state_->mapped.all(), final.map_from_base);
+  const std::vector<MappedFrame>& mapped_frames = state_->mapped.all();
+  result.mapped = KeptFrames(mapped_frames, final.map_from_base);
+  const auto frame = [&](int i) { return mapped_frames[static_cast<std::size_t>(i)].frame; };
+  for (const GuessedPart& part : final.guessed) {
+    const bool ends = part.end < static_cast<int>(mapped_frames.size());
+    result.guessed.push_back(
+        {frame(part.first), ends ? std::optional(frame(part.end - 1)) : std::nullopt});
+  }
   result.map = final.map ? std::move(*final.map) : state_->Draw(result.mapped);
   return result;
 }
@@ -64,6 +71,9 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalByAdjusti
   final.loops = Held(loop_closer.loops(), adjustment);
   final.map_from_base = std::move(adjustment.map_from_base);
   JoinDoubledWalls(final);
+  final.guessed = relocation.GuessedParts(mapped.size());
+  std::erase_if(final.guessed,
+                [&](const GuessedPart& part) { return IsLeftByAny(part, final.loops); });
   final.loops = AmongKept(std::move(final.loops), mapped.all());
   final.map_from_camera = FinalPoses(history, final.map_from_base, stands);
   return final;
@@ -75,11 +85,10 @@ void IncrementalMapper::State::JoinDoubledWalls(FinalEstimate& final) const {
   std::vector<MappedFrame> frames = WithPoses(mapped.all(), final.map_from_base);
   final.map = Draw(frames);
   std::vector<CrossedWalls> crossed = WallsCrossed(frames, *final.map, kDoubledSample);
-  std::optional<int> guessed_from;
-  if (relocation.unsettled()) guessed_from = relocation.first_frame();
+  const std::vector<GuessedPart> guessed = relocation.GuessedParts(mapped.size());
   for (int joined = 0; joined < kMostJoins && CrossingShare(crossed) >= kDoubledShare; ++joined) {
-    auto loop = LoopOfDoubledWalls(frames, crossed, options.loops.search, options.loops.overlap,
-                                   guessed_from);
+    auto loop =
+        LoopOfDoubledWalls(frames, crossed, options.loops.search, options.loops.overlap, guessed);
     if (!loop) return;
     loop->on_trial = true;
     loops.push_back(*loop);

@@ -142,6 +142,7 @@ struct IncrementalMapper::State {
     std::vector<Pose2> map_from_base;                   // of the mapped frames
     std::vector<std::optional<Pose3>> map_from_camera;  // of all frames
     std::vector<PlanarLoop> loops;                      // accepted, among the kept frames
+    std::vector<GuessedPart> guessed;                   // joined to the rest by no loop
     std::optional<OccupancyMap> map;                    // drawn at these poses, if it was needed
   };
   FinalEstimate Final(const std::vector<std::optional<Pose3>>& slam_final) const;

@@ -124,24 +124,18 @@ std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports) {
   return lines;
 }
 
-std::optional<int> GuessedFrom(const MappingRun& run) {
-  std::optional<int> from;
-  for (const FrameReport& report : run.reports) {
-    if (!report.map_from_camera) continue;  // lost
-    if (!report.guessed) {
-      from.reset();
-    } else if (!from) {
-      from = report.index;
-    }
+std::vector<std::string> GuessWarnings(const std::vector<GuessedFrames>& guessed) {
+  std::vector<std::string> lines;
+  for (const auto& [first, last] : guessed) {
+    const std::string where =
+        last ? fmt::format(" and again after frame {}; where the map has what lies between", *last)
+             : "; where the map goes on from there";
+    lines.push_back(
+        fmt::format("poses: SLAM was lost before frame {}{} is a guess that nothing seen since "
+                    "confirms",
+                    first, where));
   }
-  if (!from) return std::nullopt;
-  const auto& mapped = run.result.mapped;
-  const auto is_before = [&](int i) { return mapped[static_cast<std::size_t>(i)].frame < *from; };
-  const auto& loops = run.result.loops;
-  const bool joined = std::any_of(loops.begin(), loops.end(), [&](const PlanarLoop& loop) {
-    return is_before(loop.first) != is_before(loop.second);
-  });
-  return joined ? std::nullopt : from;
+  return lines;
 }
 
 std::vector<std::string> FrameRecorder::Warnings() const {
@@ -153,12 +147,7 @@ std::vector<std::string> FrameRecorder::Warnings() const {
                     "mapper.scan.max_range_m={:.2f} takes it for free space",
                     Counted(cut->frames, "frame"), cut->z_m, 0.99 * cut->z_m));
   }
-  if (const std::optional<int> frame = GuessedFrom(run_)) {
-    lines.push_back(
-        fmt::format("poses: SLAM was lost before frame {}; where the map goes on from there is a "
-                    "guess that nothing seen since confirms",
-                    *frame));
-  }
+  for (std::string& line : GuessWarnings(run_.result.guessed)) lines.push_back(std::move(line));
   return lines;
 }
 

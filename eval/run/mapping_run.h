@@ -70,10 +70,8 @@ std::vector<double> TimesOfMappedFrames(const MappingRun& run);
 // How the mapper corrected wrong poses, one line each: slips and losses of SLAM.
 std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports);
 
-// The first frame (Frame::index) after a loss of SLAM from which the position relative to the
-// earlier map remained a guess until the end: no match confirmed it, and no loop links the two
-// parts.
-std::optional<int> GuessedFrom(const MappingRun& run);
+// The parts whose place in the map remained a guess, one line each.
+std::vector<std::string> GuessWarnings(const std::vector<GuessedFrames>& guessed);
 
 // What a sequence is mapped with besides its frames.
 struct MappingInputs {

@@ -106,6 +106,7 @@ bool Relocation::BeginIfDoubtful(double share, int next_frame) {
   }
   // A loop reported with this frame already determines its place.
   if (IsUsual(share) || IsJoinedAt(next_frame)) return false;
+  if (rare_) left_.push_back({first_frame_, next_frame});
   active_ = true;
   rare_ = false;
   first_frame_ = next_frame;
@@ -131,6 +132,13 @@ bool Relocation::IsJoinedAt(int frame) const {
 void Relocation::Joined(const std::vector<PlanarLoop>& loops) {
   held_ = loops;
   if (IsJoinedAt(first_frame_)) active_ = rare_ = false;
+  std::erase_if(left_, [&](const GuessedPart& part) { return IsLeftByAny(part, loops); });
+}
+
+std::vector<GuessedPart> Relocation::GuessedParts(int mapped_frames) const {
+  std::vector<GuessedPart> parts = left_;
+  if (unsettled() && first_frame_ < mapped_frames) parts.push_back({first_frame_, mapped_frames});
+  return parts;
 }
 
 void Relocation::GuessMoved() {

@@ -8,6 +8,7 @@
 
 #include "mapper/core/options.h"
 #include "mapper/core/reference_map.h"
+#include "mapper/graph/guessed_part.h"
 #include "mapper/graph/place_matcher.h"
 
 namespace depthgrid {
@@ -78,6 +79,9 @@ class Relocation {
   // Whether the place after the last loss is still a guess, searched for often (active) or rarely.
   bool unsettled() const { return active_ || rare_; }
   int first_frame() const { return first_frame_; }
+  // The parts of so many mapped frames that no search and no loop placed: the one after the last
+  // loss, and earlier ones that were searched for until the next loss.
+  std::vector<GuessedPart> GuessedParts(int mapped_frames) const;
 
   // Call after an adjustment with these loops: one that joins frames before and after the loss ends
   // the search (after two losses in a row, for all frames since the first).
@@ -114,7 +118,8 @@ class Relocation {
   bool active_ = false;
   bool rare_ = false;
   int first_frame_ = 0;
-  std::vector<PlanarLoop> held_;  // loops of the last adjustment with loops
+  std::vector<GuessedPart> left_;  // earlier parts whose place was not found
+  std::vector<PlanarLoop> held_;   // loops of the last adjustment with loops
   double lost_s_ = 0.0;
   double way_m_ = 0.0;   // since first_frame_
   double next_m_ = 0.0;  // path length and turn of the next search

@@ -66,8 +66,10 @@ TEST(DoubledWalls, ALoopTellsHowFarTheSecondOnesAreOff) {
 TEST(DoubledWalls, AreNotJoinedWithAPartWhosePlaceIsAGuess) {
   const std::vector<MappedFrame> frames = TwiceThere({0.5, -0.4, 0.02});
   const std::vector<CrossedWalls> crossed = WallsCrossed(frames, MapOf(frames), kDoubledSample);
-  EXPECT_FALSE(LoopOfDoubledWalls(frames, crossed, {}, {}, 80).has_value());
-  EXPECT_TRUE(LoopOfDoubledWalls(frames, crossed, {}, {}, 0).has_value());
+  const int count = static_cast<int>(frames.size());
+  EXPECT_FALSE(LoopOfDoubledWalls(frames, crossed, {}, {}, {{80, count}}).has_value());
+  EXPECT_FALSE(LoopOfDoubledWalls(frames, crossed, {}, {}, {{0, 80}}).has_value());
+  EXPECT_TRUE(LoopOfDoubledWalls(frames, crossed, {}, {}, {{0, count}}).has_value());
 }
 
 TEST(DoubledWalls, OfRightPosesThereAreNone) {

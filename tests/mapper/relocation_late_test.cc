@@ -55,6 +55,7 @@ struct LateRun {
   bool guessed = true;    // in all frames since the loss before that
   bool guessed_at_end = false;
   double worst_m = 0.0;  // of the final poses
+  std::size_t guessed_parts = 0;
 };
 
 LateRun LoseBetween(const std::vector<Pose2>& before, const std::vector<Pose2>& after,
@@ -80,6 +81,7 @@ LateRun LoseBetween(const std::vector<Pose2>& before, const std::vector<Pose2>& 
     run.guessed_at_end = report.guessed;
   }
   const MapperResult result = mapper.Finish();
+  run.guessed_parts = result.guessed.size();
   for (std::size_t i = 0; i < truths.size(); ++i) {
     const Pose2 error = Between(truths[i], BaseOf(*result.map_from_camera[i]));
     run.worst_m = std::max(run.worst_m, error.translation().norm());
@@ -100,6 +102,7 @@ TEST(RelocationLate, APlaceIsFoundWhenTheCameraComesBackToIt) {
   EXPECT_GT(run.relocated_at, back_at);
   EXPECT_TRUE(run.guessed);
   EXPECT_FALSE(run.guessed_at_end);
+  EXPECT_EQ(run.guessed_parts, 0U);
   EXPECT_LT(run.worst_m, 0.03);
 }
 
@@ -116,6 +119,39 @@ TEST(RelocationLate, ARoomWhoseNeighbourDiffersIsAnother) {
   const LateRun other = LoseBetween(before, after, WithSecondRoom(true), WithSecondRoom(false));
   EXPECT_EQ(other.relocated_at, -1);
   EXPECT_TRUE(other.guessed_at_end);
+  EXPECT_EQ(other.guessed_parts, 1U);
+}
+
+// The second loss ends the search for the part that the first one began, which stays where it was
+// guessed.
+TEST(RelocationLate, APartThatALaterLossEndsRemainsAGuess) {
+  std::vector<Pose2> known, elsewhere, truths;
+  GoRound(0.0, known);
+  for (int turn = 0; turn < 2; ++turn) GoRound(kSecondRoomM, elsewhere);
+  for (const auto& part : {known, elsewhere, known, known, known}) {
+    truths.insert(truths.end(), part.begin(), part.end());
+  }
+  const std::size_t first = known.size(), end = first + elsewhere.size();
+  const Pose2 off[] = {{}, {1.6, -2.7, 0.9}, {-6.0, 1.0, -1.2}};
+  const PlanarLaser laser{.beams = 160, .field_of_view_rad = kPi, .sigma_of_range = 0.005};
+  IncrementalMapper mapper({}, std::nullopt);
+  bool guessed_at_end = true;
+  for (std::size_t i = 0; i < truths.size(); ++i) {
+    const int losses = i < first ? 0 : i < end ? 1 : 2;
+    Frame frame;
+    frame.index = static_cast<int>(i);
+    frame.stamp_s = static_cast<double>(i) / 12.0 + 5.0 * losses;
+    frame.slam_epoch = losses;
+    frame.slam_from_camera = CameraOf(off[losses] * truths[i], 1.0);
+    frame.scan = std::make_shared<const Scan>(
+        ScanOf(WithSecondRoom(false), truths[i], laser, 4, static_cast<std::uint32_t>(i)));
+    guessed_at_end = mapper.AddFrame(frame).guessed;
+  }
+  EXPECT_FALSE(guessed_at_end);
+  const MapperResult result = mapper.Finish();
+  ASSERT_EQ(result.guessed.size(), 1U);
+  EXPECT_EQ(result.guessed[0].first, static_cast<int>(first));
+  EXPECT_EQ(result.guessed[0].last, static_cast<int>(end) - 1);
 }
 
 }  // namespace
