@@ -43,8 +43,8 @@ struct RelocationOptions {
   double min_score = 0.8;          // least score of the search, 0..1
   double max_second_score = 0.85;  // greatest share of the score of any pose elsewhere
   // Least agreement of what was seen before and since, of the place and of all that was seen since.
-  // Right places reach 0.997 and more, similar
-  // offices 0.966, two rectangular rooms 0.992 (docs/results.md, "Lost and found").
+  // Right places reach 0.997 and more, similar offices 0.966, two rectangular rooms 0.992
+  // (docs/results.md, "Lost and found").
   double min_agreement = 0.995;
   // Number of consecutive searches that must agree, to consent_m and consent_deg.
   int consenting = 2;
