@@ -25,6 +25,8 @@ constexpr Lanes kLanes;
 // Unknowns and rows come in threes (a pose). The products of three rows with three rows share their
 // loads.
 constexpr int kBlock = 3;
+// Rows that are factored together, so that of 2,000 unknowns those they meet stay in the cache.
+constexpr int kTile = 12 * kBlock;
 using Rows = std::array<double*, kBlock>;
 using Block = std::array<std::array<double, kBlock>, kBlock>;
 
@@ -106,35 +108,46 @@ bool SkylineMatrix::IsInBlocks() const {
 bool SkylineMatrix::Factor() { return IsInBlocks() ? FactorByBlocks() : FactorByRows(); }
 
 bool SkylineMatrix::FactorByBlocks() {
-  const auto rows_at = [this](int i, int column) {
-    return Rows{At(i, column), At(i + 1, column), At(i + 2, column)};
-  };
-  for (int i = 0; i < size(); i += kBlock) {
-    const int begin = First(i);
-    for (int j = begin; j < i; j += kBlock) {
-      const int k = std::max(begin, First(j));
-      const Block dots = Dots(rows_at(i, k), rows_at(j, k), j - k);
-      const Rows diagonal = rows_at(j, j);
-      for (std::size_t r = 0; r < kBlock; ++r) {
-        double* x = At(i + static_cast<int>(r), j);
-        x[0] = (x[0] - dots[r][0]) / diagonal[0][0];
-        x[1] = (x[1] - dots[r][1] - x[0] * diagonal[1][0]) / diagonal[1][1];
-        x[2] = (x[2] - dots[r][2] - x[0] * diagonal[2][0] - x[1] * diagonal[2][1]) / diagonal[2][2];
-      }
+  for (int tile = 0; tile < size(); tile += kTile) {
+    const int tile_end = std::min(tile + kTile, size());
+    for (int column = 0; column < tile; column += kTile) {
+      for (int i = tile; i < tile_end; i += kBlock) FactorLeftOfDiagonal(i, column, column + kTile);
     }
-    const Rows rows = rows_at(i, begin);
-    const Block dots = Dots(rows, rows, i - begin);
-    const Rows diagonal = rows_at(i, i);
+    for (int i = tile; i < tile_end; i += kBlock) {
+      FactorLeftOfDiagonal(i, tile, i);
+      if (!FactorDiagonal(i)) return false;
+    }
+  }
+  return true;
+}
+
+void SkylineMatrix::FactorLeftOfDiagonal(int i, int begin, int end) {
+  for (int j = std::max(begin, First(i)); j < end; j += kBlock) {
+    const int k = std::max(First(i), First(j));
+    const Block dots = Dots(RowsAt(i, k), RowsAt(j, k), j - k);
+    const Rows diagonal = RowsAt(j, j);
     for (std::size_t r = 0; r < kBlock; ++r) {
-      for (std::size_t c = 0; c <= r; ++c) {
-        double value = diagonal[r][c] - dots[r][c];
-        for (std::size_t k = 0; k < c; ++k) value -= diagonal[r][k] * diagonal[c][k];
-        if (c < r) {
-          diagonal[r][c] = value / diagonal[c][c];
-        } else {
-          if (!(value > 0.0)) return false;
-          diagonal[r][r] = std::sqrt(value);
-        }
+      double* x = At(i + static_cast<int>(r), j);
+      x[0] = (x[0] - dots[r][0]) / diagonal[0][0];
+      x[1] = (x[1] - dots[r][1] - x[0] * diagonal[1][0]) / diagonal[1][1];
+      x[2] = (x[2] - dots[r][2] - x[0] * diagonal[2][0] - x[1] * diagonal[2][1]) / diagonal[2][2];
+    }
+  }
+}
+
+bool SkylineMatrix::FactorDiagonal(int i) {
+  const Rows rows = RowsAt(i, First(i));
+  const Block dots = Dots(rows, rows, i - First(i));
+  const Rows diagonal = RowsAt(i, i);
+  for (std::size_t r = 0; r < kBlock; ++r) {
+    for (std::size_t c = 0; c <= r; ++c) {
+      double value = diagonal[r][c] - dots[r][c];
+      for (std::size_t k = 0; k < c; ++k) value -= diagonal[r][k] * diagonal[c][k];
+      if (c < r) {
+        diagonal[r][c] = value / diagonal[c][c];
+      } else {
+        if (!(value > 0.0)) return false;
+        diagonal[r][r] = std::sqrt(value);
       }
     }
   }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -39,7 +40,13 @@ class SkylineMatrix : public PoseMatrix {
  private:
   // Whether each three rows begin in the same column, a multiple of three.
   bool IsInBlocks() const;
+  std::array<double*, 3> RowsAt(int i, int column) {
+    return {At(i, column), At(i + 1, column), At(i + 2, column)};
+  }
   bool FactorByBlocks();
+  // The factor of rows i to i + 2, columns begin to end - 1, of which those before are there.
+  void FactorLeftOfDiagonal(int i, int begin, int end);
+  bool FactorDiagonal(int i);
   bool FactorByRows();
 
   std::vector<int> first_;

@@ -4,7 +4,9 @@
 // with the square of the run's length.
 #pragma once
 
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "mapper/surfel/pose_matrix.h"
@@ -18,6 +20,8 @@ class SparsePoseMatrix : public PoseMatrix {
 
   int size() const override { return 3 * static_cast<int>(rows_.size()); }
   void AddBlock(int row_pose, int column_pose, const Eigen::Matrix3d& block) override;
+  void AddProducts(int row_pose, const Eigen::Vector3d& left,
+                   std::span<const PoseShare> right) override;
   double& Diagonal(int i) override;
   bool Factor() override;
   Eigen::VectorXd Solve(Eigen::VectorXd b) const override;
@@ -28,8 +32,15 @@ class SparsePoseMatrix : public PoseMatrix {
     int column = 0;
     int block = 0;
   };
-  // The block of two poses, created as zero.
-  Eigen::Matrix3d& BlockAt(int row_pose, int column_pose);
+  // Where the block of two poses is in its row, at `from` or later; it is created as zero.
+  std::size_t PlaceOf(int row_pose, int column_pose, std::size_t from);
+  Eigen::Matrix3d& BlockAt(int row_pose, int column_pose) {
+    return BlockOf(row_pose, PlaceOf(row_pose, column_pose, 0));
+  }
+  Eigen::Matrix3d& BlockOf(int row_pose, std::size_t place) {
+    const Entry& entry = rows_[static_cast<std::size_t>(row_pose)][place];
+    return blocks_[static_cast<std::size_t>(entry.block)];
+  }
 
   bool FactorDense();
   bool FactorSparse();
