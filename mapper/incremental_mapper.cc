@@ -93,6 +93,7 @@ void IncrementalMapper::State::Map(const Frame& frame, FrameReport& report) {
   TakeOutMistaken(frame, report);
   MapScans(frame, scans, report);
   beginning.Add(frame, scans);
+  TellCorrections(report);
 }
 
 void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& scans,
@@ -114,6 +115,7 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
 
 void IncrementalMapper::State::Begin(const Frame& frame, FrameReport& report) {
   history.Start(frame);
+  moves = {};
   report.index = frame.index;
   report.stamp_s = frame.stamp_s;
   report.slam_from_camera = frame.slam_from_camera;
@@ -210,52 +212,6 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
   } else if (report.match.found) {
     relocation.Explained(share);
   }
-}
-
-// Moves all frames mapped from index `first` on, rigidly.
-void IncrementalMapper::State::MovePart(int first, const Pose2& motion) {
-  std::vector<Pose2> map_from_base;
-  for (int i = 0; i < mapped.size(); ++i) {
-    const Pose2& pose = mapped.all()[static_cast<std::size_t>(i)].map_from_base;
-    map_from_base.push_back(i < first ? pose : motion * pose);
-  }
-  mapped.ForgetMotionTo(first);
-  MoveTo(map_from_base, {}, first);
-  // What these collect lies where the part was.
-  slides.Forget();
-  if (loop_search) loop_search->Forget();
-}
-
-// Moves all frames mapped since the loss once the search has found their place.
-void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& report) {
-  const StageTimer timer(clocks, report.times.loops_us);
-  if (!relocation.unsettled() || !(report.inserted || report.well_seen)) return;
-  const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
-  if (!moved) return;
-  MovePart(relocation.first_frame(), *moved);
-  report.relocated = true;
-}
-
-// Sets corrected poses; the filter's correction follows the newest mapped frame.
-void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
-                                      const Eigen::MatrixXd& covariance,
-                                      const std::optional<int>& moved_apart) {
-  const Pose2 before = mapped.back().map_from_base;
-  mapped.MoveTo(map_from_base);
-  if (moved_apart) {
-    reference->RebuildMoved(mapped.all(), *moved_apart);
-  } else {
-    reference->Rebuild(mapped.all());
-  }
-  const FrameRecord& record = *history.Find(mapped.back().frame);
-  const Pose2& after = mapped.back().map_from_base;
-  if (filter_epoch == record.epoch) {
-    filter.SetCorrection(after * Inverse(BaseOf(*record.slam_from_camera)));
-  } else {  // a newer epoch began with frames without a scan: move along
-    filter.SetCorrection(after * Inverse(before) * filter.map_from_slam());
-  }
-  errors.Break();
-  errors.Adjusted(covariance, filter.step().new_bias);
 }
 
 // Predicts with SLAM's motion; first places a new epoch or the start in a prior map.

@@ -1,10 +1,22 @@
 #include "mapper/mapped_frames.h"
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "mapper/core/error.h"
 
 namespace depthgrid {
+
+void FrameMoves::Include(const Pose2& before, const Pose2& after) {
+  most_m = std::max(most_m, (after.translation() - before.translation()).norm());
+  most_rad = std::max(most_rad, std::abs(WrapAngle(after.yaw_rad - before.yaw_rad)));
+}
+
+void FrameMoves::Append(const FrameMoves& next) {
+  most_m += next.most_m;
+  most_rad += next.most_rad;
+}
 
 MappedFrames::MappedFrames(const KeepOptions& options, int recent_frames)
     : options_(options),
@@ -55,18 +67,21 @@ const MappedFrame& MappedFrames::Add(MappedFrame frame, const FrameScans& scans,
   return frames_.back();
 }
 
-void MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
+FrameMoves MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
   Require(map_from_base.size() == frames_.size(), "one corrected pose a frame");
+  FrameMoves moves;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
     MappedFrame& frame = frames_[i];
     if (!frame.kept()) {
       frame.match.map_from_base =
           map_from_base[i] * Between(frame.map_from_base, frame.match.map_from_base);
     }
+    moves.Include(frame.map_from_base, map_from_base[i]);
     frame.map_from_base = map_from_base[i];
   }
   keeping_.Rebuild(frames_);
   standing_.MapMoved();
+  return moves;
 }
 
 void MappedFrames::ForgetMotionTo(int position) {

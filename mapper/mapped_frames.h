@@ -11,6 +11,17 @@
 
 namespace depthgrid {
 
+// How far poses were moved: the largest distance and the largest turn of any.
+struct FrameMoves {
+  double most_m = 0.0;
+  double most_rad = 0.0;
+
+  bool any() const { return most_m > 0.0 || most_rad > 0.0; }
+  void Include(const Pose2& before, const Pose2& after);
+  // Moves of the same poses that follow: the sums are upper bounds.
+  void Append(const FrameMoves& next);
+};
+
 class MappedFrames {
  public:
   // The newest `recent_frames` have their scans even if tied, as active submaps may be redrawn and
@@ -35,7 +46,7 @@ class MappedFrames {
                          const std::optional<double>& explained,
                          std::span<const MapPart> matched = {}, int from = 0);
   // Sets corrected poses, one per frame. Matches of tied frames move with them.
-  void MoveTo(const std::vector<Pose2>& map_from_base);
+  FrameMoves MoveTo(const std::vector<Pose2>& map_from_base);
   // Drops SLAM's motion to this frame, which is wrong.
   void ForgetMotionTo(int position);
 

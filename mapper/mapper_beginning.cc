@@ -26,6 +26,8 @@ void IncrementalMapper::State::GoThroughAgain(const Frame& newest,
   begin(newest, report);
   if ((spread || rounds.any_was_due()) && !again.mapped.empty()) again.AdjustBetweenFrames();
   again.errors.Break();
+  again.moves = moves;
+  again.moves.Append(MovesTo(again));
   // These do not depend on poses in the map.
   again.scanner = std::move(scanner);
   again.moving = std::move(moving);
@@ -47,6 +49,7 @@ void IncrementalMapper::State::TakeOutMistaken(const Frame& newest, FrameReport&
   if (any) {
     const StageTimer timer(clocks, report.times.loops_us);
     GoThroughAgain(newest, first_spread);
+    report.map_corrected = true;
   }
   if (!AwaitsSpread() && !moving.MayBeMistaken()) beginning.End();
 }

@@ -50,6 +50,7 @@ struct IncrementalMapper::State {
   SlipSearch slips;
   AdjustmentRounds rounds;
   MappedFrames mapped;
+  FrameMoves moves;                          // of earlier frames, by the newest frame
   std::optional<MotionSpread> first_spread;  // that the first frames were mapped again with
   Beginning beginning;
   bool has_prior = false;            // a prior map, or only its frame
@@ -103,6 +104,8 @@ struct IncrementalMapper::State {
   // frames from this index on were moved, rigidly.
   void MoveTo(const std::vector<Pose2>& map_from_base, const Eigen::MatrixXd& covariance,
               const std::optional<int>& moved_apart = {});
+  FrameMoves MovesTo(const State& again) const;
+  void TellCorrections(FrameReport& report) const;
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);

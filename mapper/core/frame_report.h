@@ -49,7 +49,8 @@ struct FrameReport {
   std::optional<Pose3> slam_from_camera;  // the input
   int slam_epoch = 0;
   std::optional<Pose3> map_from_camera;  // the online estimate; empty while unknown
-  Pose2 map_from_slam;                   // the correction after this frame
+  // The correction after this frame, in the map as it is then: of the next pose of the same epoch.
+  Pose2 map_from_slam;
   MatchResult match;
   std::array<double, 3> innovation = {};  // match against prediction in base axes: m, m, rad
   // Chi-square of the innovation, its covariance including the errors of the matched map; where the
@@ -72,6 +73,16 @@ struct FrameReport {
   // After a loss of SLAM: the pose relative to the map from before it is only a guess, until the
   // wide search finds the place or an accepted loop joins the two parts.
   bool guessed = false;
+  // What was mapped before this frame has changed: its poses were adjusted (a round of adjustment,
+  // a loop, a slide, a relocation, the first frames mapped again), or an object that moves was
+  // taken out. Maps drawn before are out of date, poses in them too; map_from_camera of this frame
+  // may still be from before, map_from_slam is not. While it is false a map only grows
+  // (MapDrawing).
+  bool map_corrected = false;
+  // Of all earlier mapped frames, those of a prior map included: how far any was moved and how far
+  // any was turned, at most. 0 where nothing moved; what is seen 3 m away moves 3 m a radian more.
+  double map_moved_m = 0.0;
+  double map_turned_rad = 0.0;
   bool inserted = false;             // its scan is kept for the map
   bool well_seen = false;            // its place has enough scans: the frame is tied to a kept one
   std::optional<CameraStand> stand;  // of a depth image: tilt and height its scan was made with

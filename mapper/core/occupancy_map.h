@@ -61,4 +61,8 @@ OccupancyMap CertainMap(const StateMap& map);
 
 StateMap StatesOf(const OccupancyMap& map);
 
+// The smallest rectangle around all cells whose probability differs between two drawings of a map,
+// cells outside of one being unknown in it; empty when none does. Both of one resolution.
+GridGeometry ChangedBetween(const OccupancyMap& before, const OccupancyMap& after);
+
 }  // namespace depthgrid

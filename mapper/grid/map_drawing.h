@@ -14,6 +14,9 @@
 
 namespace depthgrid {
 
+// A map can be drawn on: scans added later give what all of them added at once, in the same order,
+// give. So a live map needs only the frames of CurrentMapped() that are new, until
+// FrameReport::map_corrected says to begin again (docs/examples/live_mapper.cc).
 class MapDrawing {
  public:
   explicit MapDrawing(const GridOptions& options);

@@ -1,0 +1,70 @@
+// Moves what was mapped, and tells what was moved.
+#include "mapper/mapper_state.h"
+
+namespace depthgrid {
+
+// Moves all frames mapped from index `first` on, rigidly.
+void IncrementalMapper::State::MovePart(int first, const Pose2& motion) {
+  std::vector<Pose2> map_from_base;
+  for (int i = 0; i < mapped.size(); ++i) {
+    const Pose2& pose = mapped.all()[static_cast<std::size_t>(i)].map_from_base;
+    map_from_base.push_back(i < first ? pose : motion * pose);
+  }
+  mapped.ForgetMotionTo(first);
+  MoveTo(map_from_base, {}, first);
+  // What these collect lies where the part was.
+  slides.Forget();
+  if (loop_search) loop_search->Forget();
+}
+
+// Moves all frames mapped since the loss once the search has found their place.
+void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& report) {
+  const StageTimer timer(clocks, report.times.loops_us);
+  if (!relocation.unsettled() || !(report.inserted || report.well_seen)) return;
+  const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
+  if (!moved) return;
+  MovePart(relocation.first_frame(), *moved);
+  report.relocated = true;
+}
+
+// Sets corrected poses; the filter's correction follows the newest mapped frame.
+void IncrementalMapper::State::MoveTo(const std::vector<Pose2>& map_from_base,
+                                      const Eigen::MatrixXd& covariance,
+                                      const std::optional<int>& moved_apart) {
+  const Pose2 before = mapped.back().map_from_base;
+  moves.Append(mapped.MoveTo(map_from_base));
+  if (moved_apart) {
+    reference->RebuildMoved(mapped.all(), *moved_apart);
+  } else {
+    reference->Rebuild(mapped.all());
+  }
+  const FrameRecord& record = *history.Find(mapped.back().frame);
+  const Pose2& after = mapped.back().map_from_base;
+  if (filter_epoch == record.epoch) {
+    filter.SetCorrection(after * Inverse(BaseOf(*record.slam_from_camera)));
+  } else {  // a newer epoch began with frames without a scan: move along
+    filter.SetCorrection(after * Inverse(before) * filter.map_from_slam());
+  }
+  errors.Break();
+  errors.Adjusted(covariance, filter.step().new_bias);
+}
+
+// Of two maps of the same frames, the second one with them mapped again.
+FrameMoves IncrementalMapper::State::MovesTo(const State& again) const {
+  FrameMoves moves_to;
+  for (const MappedFrame& frame : mapped.all()) {
+    const int position = again.history.Find(frame.frame)->mapped;
+    if (position < 0) continue;
+    moves_to.Include(frame.map_from_base, FrameAt(again.mapped.all(), position).map_from_base);
+  }
+  return moves_to;
+}
+
+void IncrementalMapper::State::TellCorrections(FrameReport& report) const {
+  report.map_moved_m = moves.most_m;
+  report.map_turned_rad = moves.most_rad;
+  report.map_corrected = report.map_corrected || moves.any();
+  report.map_from_slam = prior_start.value_or(filter.map_from_slam());
+}
+
+}  // namespace depthgrid
