@@ -1,11 +1,16 @@
-// Feeds the mapper frame by frame, as a live SLAM system would, and keeps the map.
+// Feeds the mapper frame by frame, as a live SLAM system would, while another thread draws the map.
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <future>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "mapper/core/error.h"
 #include "mapper/core/level.h"
+#include "mapper/grid/map_drawing.h"
 #include "mapper/incremental_mapper.h"
 
 using namespace depthgrid;
@@ -25,11 +30,41 @@ Scan Look(const Pose2& base) {
   return scan;
 }
 
-void Show(const OccupancyMap& map) {  // a real node would publish it
-  const StateMap states = StatesOf(map);
-  const auto walls = std::count(states.states.begin(), states.states.end(), CellState::kOccupied);
-  std::printf("%d x %d cells, %d of them wall\n", map.geometry.width_cells,
-              map.geometry.height_cells, static_cast<int>(walls));
+// The map so far. Draws on, so that it takes no longer the longer the run.
+class LiveMap {
+ public:
+  explicit LiveMap(const GridOptions& options) : options_(options), drawing_(options) {}
+
+  // `mapped`: CurrentMapped(), a copy that the mapper's thread no longer touches. `corrected`:
+  // whether any report since the last call had map_corrected.
+  void Draw(const std::vector<MappedFrame>& mapped, bool corrected) {
+    if (corrected) {
+      drawing_ = MapDrawing(options_);
+      drawn_ = 0;
+    }
+    for (; drawn_ < mapped.size(); ++drawn_) {
+      const MappedFrame& frame = mapped[drawn_];
+      drawing_.Add(frame.frame, *frame.obstacles, frame.map_from_base);
+    }
+    const OccupancyMap before = std::exchange(map_, drawing_.Map());
+    changed_ = ChangedBetween(before, map_);
+  }
+  void Show() const {  // a real node would publish it, or what changed of it
+    std::printf("%d x %d cells, %d x %d of them may have changed\n", map_.geometry.width_cells,
+                map_.geometry.height_cells, changed_.width_cells, changed_.height_cells);
+  }
+  const OccupancyMap& map() const { return map_; }
+
+ private:
+  GridOptions options_;
+  MapDrawing drawing_;
+  std::size_t drawn_ = 0;  // of the mapped frames
+  OccupancyMap map_;
+  GridGeometry changed_;
+};
+
+bool IsReady(const std::future<void>& task) {
+  return !task.valid() || task.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
 
 int main(int argc, char** argv) {
@@ -39,7 +74,10 @@ int main(int argc, char** argv) {
     return 0;
   }
   const MapperOptions options;  // the most accurate; mapper_options.h has them all
-  IncrementalMapper mapper(options, std::nullopt);
+  IncrementalMapper mapper(options, std::nullopt);  // used by this thread only
+  LiveMap live(options.grid);                       // by `drawing` while that runs
+  std::future<void> drawing;
+  bool corrected = false;
   for (int i = 0; i < 300; ++i) {  // a turn on the spot, 30 frames a second
     const Pose2 base{0.3, -0.2, WrapAngle(RadFromDeg(1.2) * i)};
     Frame frame;
@@ -52,18 +90,31 @@ int main(int argc, char** argv) {
     frame.scan = std::make_shared<Scan>(Look(base));
     try {
       const FrameReport report = mapper.AddFrame(frame);  // the pose to navigate by, at once
-      if (!report.map_from_camera) continue;              // SLAM is lost
+      corrected = corrected || report.map_corrected;
+      if (!report.map_from_camera) continue;  // SLAM is lost
       const Pose2 map_from_base = BaseOf(*report.map_from_camera);
-      if (i % 90 == 89) std::printf("at %.2f, %.2f m: ", map_from_base.x_m, map_from_base.y_m);
+      if (i % 90 == 89) std::printf("at %.2f, %.2f m\n", map_from_base.x_m, map_from_base.y_m);
     } catch (const InputError& error) {  // what no mapper can use; the next frame may be sound
       std::fprintf(stderr, "left out: %s\n", error.what());
       continue;
     }
-    // All of the map is drawn for it: once in a while, not after each frame.
-    if (i % 90 == 89) Show(mapper.CurrentMap());
+    // Once in a while, and not before the last drawing is done.
+    if (i % 30 == 29 && IsReady(drawing)) {
+      if (drawing.valid()) live.Show();
+      drawing = std::async(std::launch::async, [&live, corrected, mapped = mapper.CurrentMapped()] {
+        live.Draw(mapped, corrected);
+      });
+      corrected = false;
+    }
   }
+  if (drawing.valid()) drawing.get();
+  live.Draw(mapper.CurrentMapped(), corrected);
+  // The same as mapper.CurrentMap(), which draws all of it on the mapper's thread.
+  const bool same = ChangedBetween(live.map(), mapper.CurrentMap()).size() == 0;
   const MapperResult result = mapper.Finish();  // everything adjusted once more
-  Show(result.map);
   const StateMap states = StatesOf(result.map);
-  return std::count(states.states.begin(), states.states.end(), CellState::kOccupied) > 300 ? 0 : 1;
+  const auto walls = std::count(states.states.begin(), states.states.end(), CellState::kOccupied);
+  std::printf("%d x %d cells, %d of them wall\n", states.geometry.width_cells,
+              states.geometry.height_cells, static_cast<int>(walls));
+  return same && walls > 300 ? 0 : 1;
 }

@@ -31,6 +31,7 @@ inline bool IsOnAMap(const Pose2& pose) {
          std::isfinite(pose.yaw_rad);
 }
 
+// Scans must not change once given, as they may be kept; an image is not kept.
 // At most one of `depth` and `scan` is set; a frame with neither carries only a pose (a missing
 // image), or only loops (SLAM is lost but reports a loop).
 struct Frame {
