@@ -57,6 +57,17 @@ std::string OffsetRemedyOf(const PoseDoubt& doubt) {
   return fmt::format("{}, {:.2f} s more or less fit as well", setting, doubt.time_unsure_s);
 }
 
+std::string KeptText(const std::optional<KeptDepth>& kept) {
+  if (!kept) return "";
+  return fmt::format(
+      " {:.0f} % of what they see, most of it in columns {} to {} and rows {} to {} and about "
+      "{:.2g} "
+      "m away, keeps its depth from one image to another half a second later, while the rest "
+      "changes: does something move along with the camera there?",
+      100.0 * kept->share, kept->first_column_px, kept->last_column_px, kept->first_row_px,
+      kept->last_row_px, kept->depth_m);
+}
+
 std::string RemedyOf(const PoseDoubt& doubt) {
   switch (doubt.reading) {
     case PoseReading::kWFirst:
@@ -133,9 +144,8 @@ std::string PoseDoubtText(const PoseDoubt& doubt) {
     return apart + ": the poses do not turn, all quaternions are the same";
   }
   if (doubt.reading == PoseReading::kNone) {
-    return apart +
-           ", and no reading of them fits: are they of these images, in this order, or does "
-           "something move along with the camera?";
+    return apart + ", and no reading of them fits: are they of these images, in this order?" +
+           KeptText(doubt.kept);
   }
   return fmt::format("{}; they would fit, to {:.1f} %, {}", apart, kPercent * doubt.better_misfit,
                      RemedyOf(doubt));

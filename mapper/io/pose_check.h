@@ -51,6 +51,9 @@ struct PoseDoubt {
   // reading.
   double misfit = 0.0;
   double better_misfit = 0.0;
+  // kNone: what most of the points show where they keep their depth from one image to the next;
+  // empty where fewer do.
+  std::optional<KeptDepth> kept;
 };
 
 // Nothing if the poses fit, if they fit moderately and no other reading is clearly better, or with

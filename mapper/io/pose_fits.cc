@@ -1,6 +1,7 @@
 #include "mapper/io/pose_fits.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace depthgrid {
 namespace {
@@ -34,19 +35,30 @@ std::optional<double> PoseFits::Mean(const PoseAttempt& attempt, std::size_t lea
   return sum / static_cast<double>(count);
 }
 
-double PoseFits::WhereShared(const PoseAttempt& attempt, PairPoints which) const {
-  double sum = 0.0;
-  std::size_t count = 0;
+std::vector<double> PoseFits::SharedMisfits(const PoseAttempt& attempt, PairPoints which) const {
+  std::vector<double> misfits;
   for (const ImagePair& pair : pairs_) {
     const auto second_from_first = RelativeIn(pair, attempt);
     if (!second_from_first) continue;
     const double misfit =
         MisfitOf(pair, attempt.camera, *second_from_first, attempt.meaning, which);
-    if (misfit == kNothingShared) continue;
-    sum += std::min(kMostMisfit, misfit);
-    ++count;
+    if (misfit != kNothingShared) misfits.push_back(std::min(kMostMisfit, misfit));
   }
-  return count < kLeastPairs ? 0.0 : sum / static_cast<double>(count);
+  return misfits;
+}
+
+double PoseFits::WhereShared(const PoseAttempt& attempt, PairPoints which) const {
+  const std::vector<double> misfits = SharedMisfits(attempt, which);
+  if (misfits.size() < kLeastPairs) return 0.0;
+  return std::accumulate(misfits.begin(), misfits.end(), 0.0) / static_cast<double>(misfits.size());
+}
+
+double PoseFits::ShareAbove(double misfit, const PoseAttempt& attempt, PairPoints which) const {
+  const std::vector<double> misfits = SharedMisfits(attempt, which);
+  if (misfits.size() < kLeastPairs) return 0.0;
+  const auto above = std::count_if(misfits.begin(), misfits.end(),
+                                   [misfit](double of_pair) { return of_pair > misfit; });
+  return static_cast<double>(above) / static_cast<double>(misfits.size());
 }
 
 std::size_t PoseFits::PairsWithPoses() const {

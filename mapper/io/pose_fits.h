@@ -42,9 +42,12 @@ class PoseFits {
   // The same over only the pairs that overlap according to the poses, as in fast turns others do
   // not overlap, which is no fault. 0 if these pairs are fewer than kLeastPairs.
   double WhereShared(const PoseAttempt& attempt, PairPoints which) const;
+  // Of these pairs, the share with a misfit above `misfit`.
+  double ShareAbove(double misfit, const PoseAttempt& attempt, PairPoints which) const;
   std::size_t PairsWithPoses() const;
 
  private:
+  std::vector<double> SharedMisfits(const PoseAttempt& attempt, PairPoints which) const;
   // Nothing if a pose is missing or SLAM corrected itself in between.
   std::optional<Pose3> RelativeIn(const ImagePair& pair, const PoseAttempt& attempt) const;
 

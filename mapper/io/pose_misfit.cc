@@ -27,6 +27,10 @@ constexpr double kLeastShared = 0.2;
 constexpr double kChange = 0.05;
 constexpr int kLeastChanged = 30;
 
+bool IsUnchanged(double z, double then) {
+  return !(std::abs(then - z) > kChange * z) || !(then > 0.0);
+}
+
 // The typical time between images (a median, as pauses are few).
 double UsualImageStepS(std::span<const RecordedImage> images) {
   std::vector<double> steps_s;
@@ -82,16 +86,15 @@ double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3&
     const double depth = image.At(u, v);
     return meaning == DepthMeaning::kZ ? depth : depth / Unproject(camera, u, v, 1.0).norm();
   };
+  const auto unchanged = [&](int u, int v) {
+    return which == PairPoints::kChanged && IsUnchanged(z_m(first, u, v), z_m(second, u, v));
+  };
   std::vector<double> misfits;
   int points = 0;
   for (int v = step_px / 2; v < first.height_px; v += step_px) {
     for (int u = step_px / 2; u < first.width_px; u += step_px) {
       const double z = z_m(first, u, v);
-      if (!(z > 0.0)) continue;
-      if (which == PairPoints::kChanged) {
-        const double then = z_m(second, u, v);
-        if (!(std::abs(then - z) > kChange * z) || !(then > 0.0)) continue;
-      }
+      if (!(z > 0.0) || unchanged(u, v)) continue;
       ++points;
       const Eigen::Vector3d there = second_from_first * Unproject(camera, u, v, z);
       if (!(there.z() > 0.0)) continue;
@@ -99,8 +102,10 @@ double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3&
       const bool inside = pixel.x() >= 0.0 && pixel.x() < second.width_px && pixel.y() >= 0.0 &&
                           pixel.y() < second.height_px;
       if (!inside) continue;
-      const double seen = z_m(second, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
-      if (seen > 0.0) misfits.push_back(std::abs(there.z() - seen) / seen);
+      const int seen_u = static_cast<int>(pixel.x()), seen_v = static_cast<int>(pixel.y());
+      const double seen = z_m(second, seen_u, seen_v);
+      if (seen > 0.0 && !unchanged(seen_u, seen_v))
+        misfits.push_back(std::abs(there.z() - seen) / seen);
     }
   }
   if (which == PairPoints::kChanged && points < kLeastChanged) return kNothingShared;
@@ -108,6 +113,69 @@ double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3&
     return kNothingShared;
   }
   return UpperMedian(misfits);
+}
+
+namespace {
+
+struct KeptPixels {
+  std::vector<double> columns_px, rows_px, depths_m;
+  int changed = 0;
+
+  void Append(const KeptPixels& more) {
+    columns_px.insert(columns_px.end(), more.columns_px.begin(), more.columns_px.end());
+    rows_px.insert(rows_px.end(), more.rows_px.begin(), more.rows_px.end());
+    depths_m.insert(depths_m.end(), more.depths_m.begin(), more.depths_m.end());
+    changed += more.changed;
+  }
+};
+
+KeptPixels KeptPixelsIn(const ImagePair& pair) {
+  const DepthImage& first = *pair.first;
+  const int step_px = std::max(1, first.width_px / kPointsAcross);
+  KeptPixels kept;
+  for (int v = step_px / 2; v < first.height_px; v += step_px) {
+    for (int u = step_px / 2; u < first.width_px; u += step_px) {
+      const double z_m = first.At(u, v), then_m = pair.second->At(u, v);
+      if (!(z_m > 0.0) || !(then_m > 0.0)) continue;
+      if (!IsUnchanged(z_m, then_m)) {
+        ++kept.changed;
+        continue;
+      }
+      kept.columns_px.push_back(u);
+      kept.rows_px.push_back(v);
+      kept.depths_m.push_back(z_m);
+    }
+  }
+  return kept;
+}
+
+// The value below which this share of them lies.
+int QuantilePx(std::vector<double> values, double share) {
+  const auto at =
+      values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), at, values.end());
+  return static_cast<int>(*at);
+}
+
+}  // namespace
+
+KeptDepth KeptDepthIn(std::span<const ImagePair> pairs) {
+  KeptPixels all;
+  for (const ImagePair& pair : pairs) {
+    const KeptPixels kept = KeptPixelsIn(pair);
+    if (kept.changed >= kLeastChanged) all.Append(kept);
+  }
+  KeptDepth result;
+  if (all.depths_m.empty()) return result;
+  const auto count = static_cast<double>(all.depths_m.size());
+  constexpr double kLow = 0.15, kHigh = 0.85;
+  result.share = count / (count + all.changed);
+  result.depth_m = UpperMedian(all.depths_m);
+  result.first_column_px = QuantilePx(all.columns_px, kLow);
+  result.last_column_px = QuantilePx(all.columns_px, kHigh);
+  result.first_row_px = QuantilePx(all.rows_px, kLow);
+  result.last_row_px = QuantilePx(all.rows_px, kHigh);
+  return result;
 }
 
 }  // namespace depthgrid

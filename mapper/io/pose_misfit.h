@@ -37,8 +37,9 @@ constexpr double kNothingShared = 1.0;
 // Which points of a pair are compared.
 enum class PairPoints {
   kAll,
-  // Those whose pixel has another depth in the second image. The floor before a robot's level
-  // camera, or the robot itself, stays as it is however the robot drives.
+  // Those whose pixel has another depth in the second image, as has, in the first one, the pixel
+  // they are compared with. The floor before a robot's level camera, the robot itself or somebody
+  // who keeps ahead of it stays as it is however the robot drives; the latter hide what is behind.
   kChanged,
 };
 
@@ -46,5 +47,17 @@ enum class PairPoints {
 // over what both show; kNothingShared with next to no overlap or next to no such points.
 double MisfitOf(const ImagePair& pair, const PinholeCamera& camera, const Pose3& second_from_first,
                 DepthMeaning meaning = DepthMeaning::kZ, PairPoints which = PairPoints::kAll);
+
+// Pixels that keep their depth from one image of a pair to the other (to 5 %) while others change:
+// what moves along with the camera, or floor and walls that it moves along.
+struct KeptDepth {
+  double share = 0.0;    // of the pixels with a depth
+  double depth_m = 0.0;  // median
+  // Columns and rows between which seven in ten of them lie.
+  int first_column_px = 0, last_column_px = 0;
+  int first_row_px = 0, last_row_px = 0;
+};
+// Over all pairs that show motion; a share of 0 where none does.
+KeptDepth KeptDepthIn(std::span<const ImagePair> pairs);
 
 }  // namespace depthgrid

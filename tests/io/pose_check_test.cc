@@ -336,6 +336,42 @@ TEST(PoseCheck, SaysOfPosesThatFitInNoReading) {
     std::swap(pairs[i].first, pairs[pairs.size() - 1 - i].second);
   }
   EXPECT_EQ(reading(AsItIs), PoseReading::kNone);
+  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(AsItIs), {})->kept);
+}
+
+// In the columns from 16 to 63 of 80, .8 m away.
+std::vector<ImagePair> PairsBehindSomebody(bool in_order) {
+  std::vector<ImagePair> pairs = Pairs(0.005);
+  if (!in_order) {
+    for (std::size_t i = 0; i < pairs.size() / 2; ++i) {
+      std::swap(pairs[i].first, pairs[pairs.size() - 1 - i].second);
+    }
+  }
+  const auto hidden = [](const DepthImage& image) {
+    auto with_somebody = std::make_shared<DepthImage>(image);
+    for (int v = 0; v < image.height_px; ++v) std::fill_n(with_somebody->Row(v) + 16, 48, 0.8F);
+    return with_somebody;
+  };
+  for (ImagePair& pair : pairs) {
+    pair.first = hidden(*pair.first);
+    pair.second = hidden(*pair.second);
+  }
+  return pairs;
+}
+
+TEST(PoseCheck, SomebodyWhoKeepsAheadIsNoReasonToDoubtRightPoses) {
+  EXPECT_FALSE(DoubtOfPoses(PairsBehindSomebody(true), kCamera, Given(AsItIs), {}));
+}
+
+TEST(PoseCheck, BehindSomebodyWrongPosesAreDoubtedAndTheirPlaceIsTold) {
+  const auto doubt = DoubtOfPoses(PairsBehindSomebody(false), kCamera, Given(AsItIs), {});
+  ASSERT_TRUE(doubt);
+  EXPECT_EQ(doubt->reading, PoseReading::kNone);
+  ASSERT_TRUE(doubt->kept);
+  EXPECT_GT(doubt->kept->share, 0.5);
+  EXPECT_NEAR(doubt->kept->depth_m, 0.8, 0.05);
+  EXPECT_NEAR(doubt->kept->first_column_px, 21, 5);
+  EXPECT_NEAR(doubt->kept->last_column_px, 58, 5);
 }
 
 // Half a turn a second: every pair shows two walls, and its poses are right.

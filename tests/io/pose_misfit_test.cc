@@ -98,5 +98,35 @@ TEST(PoseMisfit, WhatHasNotChangedCanBeLeftOut) {
             kNothingShared);
 }
 
+// Somebody who keeps ahead hides most of a wall, and other parts of it in the second image.
+TEST(PoseMisfit, WhatIsHiddenByWhatMovesAlongIsLeftOut) {
+  const AnalyticRoom room;
+  const Pose3 first = TiltedCamera({-1.0, 0.0, 0.0}, 1.2, 0.0, 0.0);
+  const Pose3 second = TiltedCamera({-0.6, 0.1, 0.15}, 1.2, 0.0, 0.0);
+  auto before = std::make_shared<DepthImage>(room.Render(kMisfitCamera, first));
+  auto after = std::make_shared<DepthImage>(room.Render(kMisfitCamera, second));
+  for (int v = 0; v < kMisfitCamera.height_px; ++v) {
+    std::fill_n(before->Row(v) + 10, 45, 0.7F);
+    std::fill_n(after->Row(v) + 12, 45, 0.71F);
+  }
+  const std::vector<ImagePair> pairs = {{0.0, 0.5, before, after}};
+  const Pose3 right = Between(second, first);
+  const auto misfit = [&](PairPoints which) {
+    return MisfitOf(pairs.front(), kMisfitCamera, right, DepthMeaning::kZ, which);
+  };
+  EXPECT_GT(misfit(PairPoints::kAll), 0.2);
+  EXPECT_LT(misfit(PairPoints::kChanged), 0.02);
+  const KeptDepth kept = KeptDepthIn(pairs);
+  EXPECT_GT(kept.share, 0.5);
+  EXPECT_NEAR(kept.depth_m, 0.7, 0.01);
+  EXPECT_NEAR(kept.first_column_px, 15, 5);  // seven in ten are between these
+  EXPECT_NEAR(kept.last_column_px, 52, 5);
+  EXPECT_LT(kept.first_row_px, 12);
+  EXPECT_GT(kept.last_row_px, 47);
+  EXPECT_EQ(KeptDepthIn({}).share, 0.0);
+  const std::vector<ImagePair> still = {{0.0, 0.5, before, before}};
+  EXPECT_EQ(KeptDepthIn(still).share, 0.0);
+}
+
 }  // namespace
 }  // namespace depthgrid
