@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "eval/doubts/truth_check.h"
 #include "eval/experiment/shipped.h"
 #include "mapper/core/angle.h"
+#include "mapper/core/error.h"
 
 namespace depthgrid {
 namespace {
@@ -27,10 +29,6 @@ bool NoneToMatch(const MappingRun& run) {
 // With a smaller share of matched frames the poses are mostly SLAM's. In shipped rooms all frames
 // but the first are matched; with 75 % matched, errors were as large as SLAM's.
 constexpr double kFewestMatched = 0.9;
-
-// If the unmatched frames have hits on more than this share of the beams, the scans are not the
-// cause.
-constexpr double kFewBeams = 0.25;
 
 struct MatchedFrames {
   int matched = 0;
@@ -80,9 +78,61 @@ std::string ImagesOf(const MappingRun& run) {
                      camera.height_px, DegFromRad(width_rad), DepthSeen(run));
 }
 
+// A reason is named if it is that of this share of the frames that show too little. Chosen.
+constexpr double kNamedShare = 0.25;
+
+std::string ReasonOf(ShownView view, const ScanOptions& scan) {
+  switch (view) {
+    case ShownView::kNoDepth:
+      return "hold next to no depth";
+    case ShownView::kNoDepthAhead:
+      return "have hardly any depth at the camera's height, as what is there is out of the "
+             "sensor's range or returns nothing";
+    case ShownView::kBeyondRange:
+      return fmt::format(
+          "see at the camera's height mostly what is beyond {:g} m (mapper.scan.max_range_m)",
+          scan.max_range_m);
+    case ShownView::kBelowRange:
+      return fmt::format(
+          "see at the camera's height mostly what is nearer than {:g} m (mapper.scan.min_range_m)",
+          scan.min_range_m);
+    case ShownView::kFloor:
+      return fmt::format(
+          "look at the floor, with hardly anything above {:g} m (mapper.scan.band_low_m)",
+          scan.band_low_m);
+    case ShownView::kCeiling:
+      return fmt::format(
+          "look at the ceiling, with hardly anything below {:g} m (mapper.scan.band_high_m)",
+          scan.band_high_m);
+    case ShownView::kFloorAndCeiling:
+      return fmt::format(
+          "look at floor and ceiling, with hardly anything from {:g} to {:g} m "
+          "(mapper.scan.band_low_m, band_high_m)",
+          scan.band_low_m, scan.band_high_m);
+    case ShownView::kOther:
+      break;
+  }
+  Broken("other views have no reason");
+}
+
+// Empty where there is none that so many frames have.
+std::string ReasonsOf(const UnmatchedViews& views, const ScanOptions& scan) {
+  std::vector<std::string> reasons;
+  for (std::size_t i = 0; i < kShownViews; ++i) {
+    const auto view = static_cast<ShownView>(i);
+    const int frames = views.Count(view);
+    if (view == ShownView::kOther || frames == 0 || frames < kNamedShare * views.frames()) continue;
+    reasons.push_back(fmt::format("{} of the others, the first is frame {}, {}", frames,
+                                  views.First(view), ReasonOf(view, scan)));
+  }
+  return fmt::format("{}", fmt::join(reasons, "; "));
+}
+
 // Why few frames were matched: too little was visible, or hits were not matched.
-std::string WhyFewMatched(const MatchedFrames& count, const MapperOptions& options) {
+std::string WhyFewMatched(const MatchedFrames& count, const UnmatchedViews& views,
+                          const MapperOptions& options) {
   if (count.beams < kFewBeams * options.scan.beams) {
+    if (std::string reasons = ReasonsOf(views, options.scan); !reasons.empty()) return reasons;
     return fmt::format(
         "in the others, on average {:.0f} of {} beams see what is matched (in mapper.scan: mode, "
         "slice_half_height_m, min_range_m, max_range_m)",
@@ -139,7 +189,7 @@ std::optional<std::string> DoubtOfView(const MappingRun& run, const MapperOption
     if (!count.AreFew()) return {};
     return fmt::format(
         "{} of {} frames could be matched, the poses of the others are those given: {}; {}",
-        count.matched, count.frames, WhyFewMatched(count, options), ImagesOf(run));
+        count.matched, count.frames, WhyFewMatched(count, run.unmatched, options), ImagesOf(run));
   }
   return fmt::format(
       "nothing could be matched, the poses are those given: no frame sees anything within {:g} m "

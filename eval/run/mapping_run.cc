@@ -66,7 +66,7 @@ FrameRecorder::FrameRecorder(const MapperOptions& options,
                              const GainOracle& oracle, const MatchOracle& match_oracle)
     : start_(std::chrono::steady_clock::now()),
       frame_count_(frame_count),
-      max_range_m_(options.scan.max_range_m),
+      scan_(options.scan),
       mapper_(options, camera, {ThreadCpuUs, SteadyUs}, oracle) {
   mapper_.SetMatchOracle(match_oracle);
   run_.camera = camera;
@@ -79,6 +79,9 @@ void FrameRecorder::Add(const Frame& frame) {
   const int position = static_cast<int>(run_.reports.size()) - 1;
   if (frame.depth && IsSample(position, frame_count_)) {
     run_.samples.push_back({frame.index, frame.depth});
+  }
+  if (frame.depth && run_.camera) {
+    run_.unmatched.Add(run_.reports.back(), *frame.depth, *run_.camera, scan_);
   }
   if (frame.depth && frame.slam_from_camera) {
     saturation_.Add(*frame.depth, *frame.slam_from_camera);
@@ -140,7 +143,7 @@ std::vector<std::string> GuessWarnings(const std::vector<GuessedFrames>& guessed
 
 std::vector<std::string> FrameRecorder::Warnings() const {
   std::vector<std::string> lines = MendedPoses(run_.reports);
-  if (const auto cut = saturation_.Found(); cut && cut->z_m < max_range_m_) {
+  if (const auto cut = saturation_.Found(); cut && cut->z_m < scan_.max_range_m) {
     lines.push_back(
         fmt::format("depth images: {} hold {:.3f} m, the largest depth, all over whatever is "
                     "behind: if all that is farther is cut to it, it is drawn as walls; --set "

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "eval/run/saturation_check.h"
+#include "eval/run/unmatched_views.h"
 #include "mapper/core/frame.h"
 #include "mapper/core/frame_report.h"
 #include "mapper/core/slam_output.h"
@@ -34,6 +35,7 @@ struct MappingRun {
   // For sources without a camera, whose frames are a laser's; their trajectories are the base's.
   Pose2 base_from_laser;
   std::vector<SampleFrame> samples;
+  UnmatchedViews unmatched;
   std::vector<std::string> warnings;
   double wall_s = 0.0;
   double cpu_s = 0.0;  // of the mapper's thread; includes the source unless it has its own threads
@@ -58,7 +60,7 @@ class FrameRecorder {
 
   std::chrono::steady_clock::time_point start_;
   int frame_count_;
-  double max_range_m_;
+  ScanOptions scan_;
   SaturationCheck saturation_;
   IncrementalMapper mapper_;
   MappingRun run_;
