@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <vector>
 
 #include "eval/metrics/cell_maps.h"
@@ -42,25 +43,59 @@ double ThicknessCells(const CellSet& walls, const Cell& cell) {
   return thinnest;
 }
 
-// Cells from the first to the last wall, both included, among those `from` to `to` steps away.
-int ExtentBetween(const CellSet& walls, const Cell& cell, const Direction& d, int from, int to) {
-  while (from <= to && !walls.Has(Moved(cell, d, from))) ++from;
-  while (from <= to && !walls.Has(Moved(cell, d, to))) --to;
-  return to - from + 1;
+// The part of a line across that lies in a wall, in steps from a cell of the line.
+struct WallStretch {
+  int first = 0;
+  int last = 0;
+};
+
+WallStretch StretchAt(const CellSet& walls, const Cell& cell, const Direction& d, int step) {
+  const Cell at = Moved(cell, d, step);
+  return {step - RunAhead(walls, at, Back(d)), step + RunAhead(walls, at, d)};
 }
 
-// Whether the estimate has a second wall on this side that the truth does not explain, either by
-// two walls or by the two faces of a solid object.
+// The true walls beside a stretch, on its own line (0) or on one of those next to it. Empty (first
+// > last) without any.
+WallStretch TruthBeside(const CellSet& true_walls, const Cell& cell, const Direction& d, int line,
+                        WallStretch near) {
+  const Cell on_line = {cell.x + line * d.y, cell.y + line * d.x};
+  near.first -= kWallToleranceCells;
+  near.last += kWallToleranceCells;
+  while (near.first <= near.last && !true_walls.Has(Moved(on_line, d, near.first))) ++near.first;
+  while (near.first <= near.last && !true_walls.Has(Moved(on_line, d, near.last))) --near.last;
+  return near;
+}
+
+// Whether each of two walls lies beside a true one of its own. Two true cells that are not farther
+// apart across the walls than along them may be of one wall, at up to 45 degrees.
+bool AreBothTrue(const CellSet& true_walls, const Cell& cell, const Direction& d,
+                 const WallStretch& own, const WallStretch& other) {
+  for (int line = -kWallToleranceCells; line <= kWallToleranceCells; ++line) {
+    const WallStretch own_truth = TruthBeside(true_walls, cell, d, line, own);
+    if (own_truth.first > own_truth.last) continue;
+    for (int other_line = -kWallToleranceCells; other_line <= kWallToleranceCells; ++other_line) {
+      const WallStretch truth = TruthBeside(true_walls, cell, d, other_line, other);
+      if (truth.first > truth.last) continue;
+      if (truth.last - own_truth.first > std::abs(other_line - line)) return true;
+    }
+  }
+  return false;
+}
+
+// Whether the estimate has a second wall on this side which, with the cell's own, is not explained
+// by two true ones.
 bool IsDoubled(const CellSet& true_walls, const CellSet& walls, const Cell& cell,
                const Direction& d, int reach_cells) {
-  const int own_end = RunAhead(walls, cell, d);
-  for (int other = own_end + 2; other <= own_end + reach_cells; ++other) {
-    if (!walls.Has(Moved(cell, d, other))) continue;
-    const int own_start = -RunAhead(walls, cell, Back(d));
-    const int other_end = other + RunAhead(walls, Moved(cell, d, other), d);
-    const int apart = other - own_end;
-    return ExtentBetween(true_walls, cell, d, own_start - 1, other_end + 1) <
-           std::max(2, apart - 1);
+  const WallStretch own = StretchAt(walls, cell, d, 0);
+  int step = own.last + 2;
+  while (step <= own.last + reach_cells) {
+    if (!walls.Has(Moved(cell, d, step))) {
+      ++step;
+      continue;
+    }
+    const WallStretch other = StretchAt(walls, cell, d, step);
+    if (!AreBothTrue(true_walls, cell, d, own, other)) return true;
+    step = other.last + 2;
   }
   return false;
 }

@@ -20,11 +20,14 @@ std::optional<WallThickness> ThicknessOf(const CellSet& walls, const CellSet& sc
 // Distance within which a second wall is searched: typical of SLAM's drift before a loop is closed.
 constexpr double kDoubleWallReachM = 0.3;
 
+// Within how many cells, diagonal steps counting one, a wall lies beside a true one: as in the cell
+// scores.
+constexpr int kWallToleranceCells = 1;
+
 // Share of the scored estimated wall cells that have, across their wall (along the axis of the
-// shorter run) and beyond a gap, a second estimated wall within kDoubleWallReachM that the truth
-// does not explain. It does not where the true walls in that stretch, with a tolerance of a cell on
-// each side, extend over a single cell or over less than the distance of the two walls minus a
-// cell. Empty without walls.
+// shorter run) and beyond a gap, a second estimated wall within kDoubleWallReachM, where not each
+// of the two lies beside a true wall of its own. The two faces of something solid are two such
+// walls. Empty without walls.
 std::optional<double> DoubleWallRate(const CellSet& true_walls, const CellSet& walls,
                                      const CellSet& scored);
 

@@ -12,30 +12,6 @@
 namespace depthgrid {
 namespace {
 
-CellSet Walls(const StateMap& map) { return CellsIn(map, CellState::kOccupied); }
-
-double MeanThickness(const std::vector<std::string>& rows) {
-  const StateMap map = DrawnMap(rows);
-  return ThicknessOf(Walls(map), Everywhere(map.geometry))->mean_m;
-}
-
-TEST(WallThickness, HandWorked) {
-  EXPECT_NEAR(MeanThickness({".....", "#####", "....."}), 0.05, 1e-12);
-  EXPECT_NEAR(MeanThickness({"#....", ".#...", "..#..", "...#.", "....#"}), 0.05, 1e-12);
-  // Three rows of six: along the diagonals the corners are one cell deep and the cells beside them
-  // two, a cell of a diagonal being sqrt(2) long.
-  const double root = std::sqrt(2.0);
-  EXPECT_NEAR(MeanThickness({"......", "######", "######", "######", "......"}),
-              0.05 * (4 * root + 6 * 2 * root + 8 * 3) / 18, 1e-12);
-  const StateMap nothing = DrawnMap({"...."});
-  EXPECT_FALSE(ThicknessOf(Walls(nothing), Everywhere(nothing.geometry)));
-}
-
-double DoubleRate(const std::vector<std::string>& truth, const std::vector<std::string>& estimate) {
-  const StateMap t = DrawnMap(truth);
-  return *DoubleWallRate(Walls(t), Walls(DrawnMap(estimate)), Everywhere(t.geometry));
-}
-
 // The hill that registration climbs is not what scores count.
 TEST(MapQuality, AMotionThatMakesBothScoresWorseIsNoErrorOfTheMap) {
   const auto fits_better = [](double chamfer_m, double f1_5cm) {
@@ -52,22 +28,6 @@ TEST(MapQuality, AMotionThatMakesBothScoresWorseIsNoErrorOfTheMap) {
   EXPECT_FALSE(fits_better(0.0101, 0.9601));
   EXPECT_FALSE(fits_better(0.0141, 0.9865));
   EXPECT_FALSE(FitsBetterAsItLies(MapQuality{}));
-}
-
-TEST(DoubleWalls, HandWorked) {
-  const std::vector<std::string> one = {"...#......", "...#......", "...#......", "...#......"};
-  const std::vector<std::string> two = {"...#...#..", "...#...#..", "...#...#..", "...#...#.."};
-  const std::vector<std::string> solid = {"...#####..", "...#####..", "...#####..", "...#####.."};
-  const std::vector<std::string> both_sides = {"..#.#.....", "..#.#.....", "..#.#.....",
-                                               "..#.#....."};
-  EXPECT_EQ(DoubleRate(one, one), 0.0);
-  EXPECT_EQ(DoubleRate(one, two), 1.0);
-  EXPECT_EQ(DoubleRate(two, two), 0.0);
-  EXPECT_EQ(DoubleRate(solid, two), 0.0);  // the two faces of something solid
-  EXPECT_EQ(DoubleRate(one, both_sides), 1.0);
-  // Beyond the reach of 0.3 m it is another wall altogether.
-  EXPECT_EQ(DoubleRate({"#.........."}, {"#.......#.."}), 0.0);
-  EXPECT_EQ(DoubleRate({"#.........."}, {"#.....#...."}), 1.0);
 }
 
 TEST(Calibration, HandWorked) {
