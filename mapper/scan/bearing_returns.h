@@ -75,6 +75,28 @@ inline float DepthBetween(float z0, float z1, float share_of_1) {
   return nearer > 0.0F ? nearer : std::max(z0, z1);
 }
 
+// Images of few columns: between their pixels even a wall at 70 degrees of incidence recedes by
+// more than kSameSurfaceShare.
+constexpr int kFewColumns = 200;
+// Two pixels of a plane differ in 1/z by as much as their neighbours; by this share more or less
+// they still count as one surface.
+constexpr float kSlopeShare = 0.5F;
+
+// The same with few columns, from the four pixels around the line (the outer two repeat the inner
+// ones at the image's edges): if 1/z goes on as to one of the neighbours, it is interpolated.
+inline float DepthBetweenFew(float before, float z0, float z1, float after, float share_of_1) {
+  const float nearer = std::min(z0, z1);
+  if (!(nearer > 0.0F) || std::abs(z1 - z0) <= kSameSurfaceShare * nearer) {
+    return DepthBetween(z0, z1, share_of_1);
+  }
+  const float w0 = 1.0F / z0, w1 = 1.0F / z1;
+  const float slope = w1 - w0;
+  const float tolerance = kSlopeShare * std::abs(slope);
+  const bool goes_on = std::abs(w0 - 1.0F / before - slope) <= tolerance ||
+                       std::abs(1.0F / after - w1 - slope) <= tolerance;
+  return goes_on ? 1.0F / (w0 + share_of_1 * slope) : DepthBetween(z0, z1, share_of_1);
+}
+
 // Largest column, such that there is a pixel to the right.
 inline float LastColumn(int width_px) { return static_cast<float>(width_px - 1) - 0.001F; }
 

@@ -125,9 +125,39 @@ HWY_INLINE Pixels FetchPixels(Floats d, const float* HWY_RESTRICT row, hn::Vec<I
   }
 }
 
-// Vectorised DepthBetween() of bearing_returns.h.
+// Where a row's pixels are: `pixels` points to column `first_column`.
+struct RowOfPixels {
+  const float* HWY_RESTRICT pixels;
+  int first_column;
+  int width;
+};
+
+// The branch of DepthBetweenFew() of bearing_returns.h whose 1/z goes on; `otherwise` elsewhere.
+HWY_NOINLINE Vec WhereSlopeGoesOn(Floats d, const RowOfPixels& row, const Pixels& pixels,
+                                  hn::Vec<Ints> column, Vec share, Vec otherwise) {
+  const Ints di;
+  const auto at = [&](auto wanted) HWY_ATTR {
+    return hn::GatherIndex(d, row.pixels, hn::Sub(wanted, hn::Set(di, row.first_column)));
+  };
+  const Vec before = at(hn::Max(hn::Sub(column, hn::Set(di, 1)), hn::Zero(di)));
+  const Vec after = at(hn::Min(hn::Add(column, hn::Set(di, 2)), hn::Set(di, row.width - 1)));
+  const Vec one = hn::Set(d, 1.0F);
+  const Vec w0 = hn::Div(one, pixels.z0), w1 = hn::Div(one, pixels.z1);
+  const Vec slope = hn::Sub(w1, w0);
+  const Vec tolerance = hn::Mul(hn::Set(d, kSlopeShare), hn::Abs(slope));
+  const Vec left = hn::Abs(hn::Sub(hn::Sub(w0, hn::Div(one, before)), slope));
+  const Vec right = hn::Abs(hn::Sub(hn::Sub(hn::Div(one, after), w1), slope));
+  const Mask goes_on = hn::Or(hn::Le(left, tolerance), hn::Le(right, tolerance));
+  const Vec between = hn::Div(one, hn::Add(w0, hn::Mul(share, slope)));
+  const Mask both_usable = hn::Gt(hn::Min(pixels.z0, pixels.z1), hn::Zero(d));
+  return hn::IfThenElse(hn::And(both_usable, goes_on), between, otherwise);
+}
+
+// Vectorised DepthBetween() of bearing_returns.h, and DepthBetweenFew() in images of few columns.
 template <bool kOneSurface>
-HWY_INLINE Vec DepthBetweenLanes(Floats d, const Pixels& pixels, Vec share) {
+HWY_INLINE Vec DepthBetweenLanes(Floats d, const RowOfPixels& row, const Pixels& pixels,
+                                 const Column& column) {
+  const Vec share = column.share;
   const auto [z0, z1] = pixels;
   const Vec difference = hn::Sub(z1, z0);
   const Vec between = hn::Add(z0, hn::Mul(share, difference));
@@ -136,7 +166,10 @@ HWY_INLINE Vec DepthBetweenLanes(Floats d, const Pixels& pixels, Vec share) {
   const Mask same_surface = hn::Le(hn::Abs(difference), tolerance);
   if (HWY_LIKELY(hn::AllTrue(d, same_surface))) return between;
   const Vec nearer = hn::IfThenElse(hn::Lt(share, hn::Set(d, 0.5F)), z0, z1);
-  const Vec apart = hn::IfThenElse(hn::Gt(nearer, hn::Zero(d)), nearer, hn::Max(z0, z1));
+  Vec apart = hn::IfThenElse(hn::Gt(nearer, hn::Zero(d)), nearer, hn::Max(z0, z1));
+  if (row.width <= kFewColumns) {
+    apart = WhereSlopeGoesOn(d, row, pixels, column.whole, share, apart);
+  }
   return hn::IfThenElse(same_surface, between, apart);
 }
 
@@ -191,7 +224,8 @@ HWY_NOINLINE void SampleTile(const Tile& tile, BlockSamples& out) {
     if constexpr (kHoles) {
       sample = hn::IfThenElse(hn::Gt(hn::Max(both.z0, both.z1), hn::Zero(d)), passing, unusable);
     } else {
-      const Vec z = DepthBetweenLanes<kContent == Content::kSurface>(d, both, column.share);
+      const Vec z = DepthBetweenLanes<kContent == Content::kSurface>(
+          d, {pixels, first_column, static_cast<int>(width)}, both, column);
       const Vec range = hn::Mul(z, hn::Add(h0, hn::Mul(h1, row)));
       sample = range;
       if constexpr (kMixed || kSlice) {

@@ -156,7 +156,11 @@ float DepthOn(const DepthImage& image, const BearingLine& line, int v) {
   const float u = std::min(std::max(line.u0 + line.u1 * row, 0.0F), LastColumn(image.width_px));
   const int column = static_cast<int>(u);
   const float* pixel = image.Row(v) + column;
-  return DepthBetween(pixel[0], pixel[1], u - static_cast<float>(column));
+  const float share = u - static_cast<float>(column);
+  if (image.width_px > kFewColumns) return DepthBetween(pixel[0], pixel[1], share);
+  const float before = pixel[column > 0 ? -1 : 0];
+  const float after = pixel[column + 2 < image.width_px ? 2 : 1];
+  return DepthBetweenFew(before, pixel[0], pixel[1], after, share);
 }
 
 float SampleAt(const DepthImage& image, const BearingLine& line, const ReturnLimits& limits,

@@ -115,9 +115,10 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   room.boxes.push_back({{0.9, -0.3, 0.0}, {1.5, 0.4, 1.2}});
   room.boxes.push_back({{0.92, -0.3, 1.2}, {1.5, 0.4, 1.4}});
   const std::vector<PinholeCamera> cameras = {
-      {160, 120, 120.3, 120.0, 79.5, 59.5, {}},  // columns within two vectors
-      {160, 120, 400.0, 400.0, 70.0, 50.0, {}},  // a narrow view
-      {12, 10, 9.0, 9.0, 5.5, 4.5, {}},          // narrower than two vectors
+      {160, 120, 120.3, 120.0, 79.5, 59.5, {}},   // columns within two vectors
+      {160, 120, 400.0, 400.0, 70.0, 50.0, {}},   // a narrow view
+      {240, 100, 180.0, 180.0, 120.0, 50.0, {}},  // more than few columns
+      {12, 10, 9.0, 9.0, 5.5, 4.5, {}},           // narrower than two vectors
       {90, 200, 70.0, 80.0, 45.0, 90.0, {}}};
   RandomStream random(11, RandomStage::kTest);
   ReturnsMemory memory;
@@ -126,8 +127,8 @@ TEST_F(InstructionSets, EveryOneGivesThePlainReturnsBitForBit) {
   for (const std::int64_t target : {std::int64_t{HWY_AVX3}, std::int64_t{HWY_AVX2}}) {
     if ((hwy::SupportedTargets() & target) == 0) continue;
     Choose(target);
-    for (int i = 0; i < 80; ++i) {
-      const PinholeCamera& camera = cameras[static_cast<std::size_t>(i) % cameras.size()];
+    for (int i = 0; i < 120; ++i) {
+      const PinholeCamera& camera = cameras[static_cast<std::size_t>(i + i / 5) % cameras.size()];
       const double pitch_rad = random.Uniform(-1.0, 1.0) * (i % 3 == 0 ? 1.5 : 0.4);
       const double roll_rad = random.Uniform(-1.0, 1.0) * (i % 5 == 0 ? 3.1 : 0.4);
       const Pose3 pose =
@@ -252,6 +253,20 @@ TEST(DepthBetween, InterpolatesASurfaceAndJumpsAtAnEdge) {
   EXPECT_EQ(DepthBetween(kInvalidDepth, 3.0F, 0.1F), 3.0F);  // the other pixel stands in
   EXPECT_EQ(DepthBetween(2.0F, kInvalidDepth, 0.9F), 2.0F);
   EXPECT_EQ(DepthBetween(kInvalidDepth, kInvalidDepth, 0.5F), kInvalidDepth);
+}
+
+TEST(DepthBetween, OfFewColumnsGoesOnAlongAWallThatRecedes) {
+  // 1/z is linear: .5 .45 .40 .35.
+  const float a = 2.0F, b = 1.0F / 0.45F, c = 2.5F, e = 1.0F / 0.35F;
+  EXPECT_FLOAT_EQ(DepthBetweenFew(a, b, c, e, 0.2F), 1.0F / 0.44F);
+  EXPECT_FLOAT_EQ(DepthBetweenFew(a, b, c, 9.0F, 0.2F), 1.0F / 0.44F);  // one neighbour is enough
+  EXPECT_FLOAT_EQ(DepthBetweenFew(kInvalidDepth, b, c, e, 0.2F), 1.0F / 0.44F);
+  EXPECT_EQ(DepthBetweenFew(b, b, c, c, 0.2F), b);        // an edge
+  EXPECT_EQ(DepthBetweenFew(a, b, 4.0F, 4.1F, 0.2F), b);  // the same beside a wall that recedes
+  EXPECT_EQ(DepthBetweenFew(b, b, c, c, 0.8F), c);
+  EXPECT_EQ(DepthBetweenFew(b, c, kInvalidDepth, e, 0.8F), c);
+  EXPECT_EQ(DepthBetweenFew(a, kInvalidDepth, c, e, 0.2F), c);
+  EXPECT_EQ(DepthBetweenFew(kInvalidDepth, b, c, kInvalidDepth, 0.2F), b);
 }
 
 }  // namespace

@@ -98,6 +98,23 @@ TEST(DepthToScan, AWallThatRecedesDoesNotBendAtTheImagesEdge) {
   }
 }
 
+// Eight bearings to a pixel; neighbouring pixels of the side wall differ by up to a tenth in depth.
+TEST(DepthToScan, AWallThatRecedesHasNoStepsInImagesOfFewColumns) {
+  const AnalyticRoom room;
+  const PinholeCamera camera{80, 60, 58.0, 58.0, 39.5, 29.5, {}};
+  const Pose2 base{-1.0, 1.5, 0.0};
+  const Pose3 pose = TiltedCamera(base, kCameraHeightM, 0.1, 0.05);
+  const Scan scan = DepthToScan(camera, {}).Convert(room.Render(camera, pose), pose);
+  int receding = 0;
+  for (const Beam& beam : scan.beams) {
+    const auto truth = room.Level(BaseOf(pose), beam.bearing_rad, kCameraHeightM);
+    if (!beam.hit || truth.incidence_rad < RadFromDeg(65.0)) continue;
+    ++receding;
+    EXPECT_NEAR(beam.range_m, truth.range_m, 0.008 * truth.range_m) << beam.bearing_rad;
+  }
+  EXPECT_GT(receding, 50);
+}
+
 TEST(DepthToScan, PortraitAndUpsideDownImagesGiveTheSameScan) {
   const AnalyticRoom room = RoomWithPillars();
   PinholeCamera camera;
