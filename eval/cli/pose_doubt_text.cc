@@ -129,10 +129,40 @@ std::string RemedyOf(const PoseDoubt& doubt) {
   Broken("poses that are read otherwise have a remedy");
 }
 
+// With its standard deviation.
+std::string SlightRemedyOf(const PoseDoubt& doubt) {
+  switch (doubt.reading) {
+    case PoseReading::kFocal:
+      return fmt::format(
+          "with fx and fy {:.3f} ({:.3f} more or less) times as large: those of the camera are "
+          "off, "
+          "or its images distorted",
+          doubt.scale, doubt.sigma);
+    case PoseReading::kScaled:
+      return fmt::format(
+          "with images {:.3f} ({:.3f} more or less) times as deep: their scale (depth_scale of the "
+          "camera file, or --set sequence.recording.depth_scale) or SLAM's is off",
+          1.0 / doubt.scale, doubt.sigma);
+    case PoseReading::kShifted:
+      return fmt::format(
+          "with other stamps: --set sequence.recording.time_offset_s={:.3f} ({:.3f} more or less)",
+          doubt.time_offset_s, doubt.sigma);
+    default:
+      Broken("only factors and stamps are slightly off");
+  }
+}
+
 }  // namespace
 
 std::string PoseDoubtText(const PoseDoubt& doubt) {
   constexpr double kPercent = 100.0;
+  if (doubt.sigma > 0.0) {
+    return fmt::format(
+        "the depth images fit the poses, surfaces seen twice lie {:.2f} % of their depth apart, "
+        "but "
+        "better, to {:.2f} %, {}",
+        kPercent * doubt.misfit, kPercent * doubt.better_misfit, SlightRemedyOf(doubt));
+  }
   const std::string apart = fmt::format(
       "the depth images do not fit the poses, surfaces seen twice lie {:.1f} % of their depth "
       "apart",

@@ -8,6 +8,7 @@
 #include "mapper/io/pose_fits.h"
 #include "mapper/io/pose_readings.h"
 #include "mapper/io/signed_axes.h"
+#include "mapper/io/slight_doubt.h"
 
 namespace depthgrid {
 namespace {
@@ -330,19 +331,20 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
   best.TryOtherAxes();
   best.TryRayLengths();
   const PoseDoubt& doubt = best.doubt();
+  const auto slight = [&] { return SlightDoubtOf(fits, camera, live, options); };
   // Where most of the images is floor close below a camera, it is that which misfits where SLAM
   // errs in height, and which fits poses that hardly move. So what shows motion must agree.
   const double changed_as_given = fits.WhereShared({AsGiven, camera}, PairPoints::kChanged);
   if (doubt.better_misfit < std::min(kMostFitting, kClearlyBetter * *as_given)) {
     const double changed = fits.WhereShared(best.attempt(), PairPoints::kChanged);
     if (changed < kClearlyBetter * changed_as_given) return doubt;
-    return {};
+    return slight();
   }
   const double as_given_shared = fits.WhereShared({AsGiven, camera}, PairPoints::kAll);
-  if (std::min(as_given_shared, changed_as_given) < kLeastUnfitting) return {};
+  if (std::min(as_given_shared, changed_as_given) < kLeastUnfitting) return slight();
   const double unfitting =
       fits.ShareAbove(kLeastUnfitting, {AsGiven, camera}, PairPoints::kChanged);
-  if (unfitting < kLeastUnfittingPairs) return {};
+  if (unfitting < kLeastUnfittingPairs) return slight();
   return Unread(doubt, live, pairs);
 }
 

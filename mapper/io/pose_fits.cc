@@ -61,6 +61,19 @@ double PoseFits::ShareAbove(double misfit, const PoseAttempt& attempt, PairPoint
   return static_cast<double>(above) / static_cast<double>(misfits.size());
 }
 
+std::vector<std::optional<double>> PoseFits::OfEach(const PoseAttempt& attempt) const {
+  std::vector<std::optional<double>> misfits;
+  misfits.reserve(pairs_.size());
+  for (const ImagePair& pair : pairs_) {
+    const auto second_from_first = RelativeIn(pair, attempt);
+    misfits.emplace_back();
+    if (!second_from_first) continue;
+    misfits.back() =
+        std::min(kMostMisfit, MisfitOf(pair, attempt.camera, *second_from_first, attempt.meaning));
+  }
+  return misfits;
+}
+
 std::size_t PoseFits::PairsWithPoses() const {
   return static_cast<std::size_t>(
       std::count_if(pairs_.begin(), pairs_.end(), [&](const ImagePair& pair) {

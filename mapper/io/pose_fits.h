@@ -44,6 +44,8 @@ class PoseFits {
   double WhereShared(const PoseAttempt& attempt, PairPoints which) const;
   // Of these pairs, the share with a misfit above `misfit`.
   double ShareAbove(double misfit, const PoseAttempt& attempt, PairPoints which) const;
+  // The misfit of each pair; nothing for those without poses.
+  std::vector<std::optional<double>> OfEach(const PoseAttempt& attempt) const;
   std::size_t PairsWithPoses() const;
 
  private:

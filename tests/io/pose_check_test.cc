@@ -194,7 +194,6 @@ TEST(PoseCheck, NamesAnotherCamera) {
   }
 }
 
-// As little as SLAM's own errors look like over a few seconds.
 // Of images that were cut, with the camera's file as it was.
 TEST(PoseCheck, NamesAnotherCentre) {
   const std::vector<ImagePair> pairs = Pairs(0.0);
@@ -211,13 +210,52 @@ TEST(PoseCheck, NamesAnotherCentre) {
   }
 }
 
-TEST(PoseCheck, ACameraThatIsSlightlyOffIsNotNamed) {
+TEST(PoseCheck, NamesASlightlyWrongCamera) {
   const std::vector<ImagePair> pairs = Pairs(0.002);
-  for (const double factor : {0.94, 1.06}) {
+  for (const double factor : {0.94, 0.97, 1.03, 1.06}) {
     PinholeCamera focal = kCamera;
     focal.fx_px *= factor;
     focal.fy_px *= factor;
-    EXPECT_FALSE(DoubtOfPoses(pairs, focal, Given(AsItIs), {})) << factor;
+    const auto doubt = DoubtOfPoses(pairs, focal, Given(AsItIs), {});
+    ASSERT_TRUE(doubt) << factor;
+    EXPECT_EQ(doubt->reading, PoseReading::kFocal) << factor;
+    EXPECT_NEAR(doubt->scale * factor, 1.0, 0.01) << factor;
+    EXPECT_GT(doubt->sigma, 0.0);
+    EXPECT_LT(doubt->sigma, 0.01);
+  }
+}
+
+TEST(PoseCheck, NamesSlightlyWrongDepthAndStamps) {
+  const std::vector<ImagePair> pairs = Pairs(0.002);
+  const auto scaled = [](const Pose3& pose) {
+    return Pose3{pose.rotation, 1.05 * pose.translation};
+  };
+  const auto scale = DoubtOfPoses(pairs, kCamera, Given(scaled), {});
+  ASSERT_TRUE(scale);
+  EXPECT_EQ(scale->reading, PoseReading::kScaled);
+  EXPECT_NEAR(scale->scale * 1.05, 1.0, 0.01);
+  RecordingOptions options;
+  options.time_offset_s = 1.0;
+  const auto shifted = DoubtOfPoses(pairs, kCamera, Given(AsItIs, 1.05), options);
+  ASSERT_TRUE(shifted);
+  EXPECT_EQ(shifted->reading, PoseReading::kShifted);
+  EXPECT_NEAR(shifted->time_offset_s, 1.05, 0.02);
+}
+
+// SLAM's own errors over a few seconds look like a wrong focal length, but leave a large misfit.
+TEST(PoseCheck, WhereSlamErrsMuchNothingSlightIsNamed) {
+  const std::vector<ImagePair> pairs = Pairs(0.002);
+  const auto errs = [](const Pose3& pose) {
+    Pose3 given = pose;
+    given.translation += 0.03 * Eigen::Vector3d(std::sin(9.0 * pose.translation.x()),
+                                                std::sin(7.0 * pose.translation.y()), 0.0);
+    return given;
+  };
+  for (const double factor : {0.97, 1.0, 1.03}) {
+    PinholeCamera focal = kCamera;
+    focal.fx_px *= factor;
+    focal.fy_px *= factor;
+    EXPECT_FALSE(DoubtOfPoses(pairs, focal, Given(errs), {})) << factor;
   }
 }
 
