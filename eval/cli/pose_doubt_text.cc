@@ -158,10 +158,10 @@ std::string PoseDoubtText(const PoseDoubt& doubt) {
   constexpr double kPercent = 100.0;
   if (doubt.sigma > 0.0) {
     return fmt::format(
-        "the depth images fit the poses, surfaces seen twice lie {:.2f} % of their depth apart, "
-        "but "
-        "better, to {:.2f} %, {}",
-        kPercent * doubt.misfit, kPercent * doubt.better_misfit, SlightRemedyOf(doubt));
+        "the depth images fit the poses better, surfaces seen twice {:.2f} % of their depth apart "
+        "in "
+        "place of {:.2f} %, {}",
+        kPercent * doubt.better_misfit, kPercent * doubt.misfit, SlightRemedyOf(doubt));
   }
   const std::string apart = fmt::format(
       "the depth images do not fit the poses, surfaces seen twice lie {:.1f} % of their depth "

@@ -50,7 +50,7 @@ struct Limits {
 struct Found {
   double error = 0.0;
   double sigma = 0.0;
-  double misfit = 0.0;  // the least mean
+  double misfit = 0.0;  // mean, with it
 };
 
 using Misfits = std::vector<double>;  // of one attempt, by pair
@@ -111,7 +111,8 @@ std::optional<Found> Find(const PoseFits& fits, const Sought& sought) {
   Found found;
   found.error = (*at - sought.steps) * sought.step;
   found.sigma = sought.step * std::sqrt(kShare * squares);
-  found.misfit = *std::min_element(sums.begin(), sums.end()) / static_cast<double>(pairs);
+  found.misfit =
+      fits.Mean(sought.attempt_of(found.error), PoseFits::kLeastPairs).value_or(kNothingShared);
   return found;
 }
 
