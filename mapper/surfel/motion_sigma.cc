@@ -48,18 +48,17 @@ constexpr double kLeastNear = 6.0;
 // bias is large for all neighbours at once.
 constexpr double kLeastGrowth = 5.0;
 
+double MotionWeight(double share) { return std::min(share / kWhollyCounted, 1.0); }
+
 // Sigma of errors that are weighted by the share of each that was observed.
 class ErrorSpread {
  public:
   void Add(double error, double share) {
-    const double weight = std::min(share / kWhollyCounted, 1.0);
+    const double weight = MotionWeight(share);
     errors_.push_back({std::abs(error), weight});
     weights_ += weight;
-    squares_ += weight * weight;
     seen_ += weight * share;
   }
-  // Effective number of errors (Kish 1965, "Survey Sampling").
-  double Count() const { return squares_ > 0.0 ? weights_ * weights_ / squares_ : 0.0; }
   double Sigma(double least_share) && {
     const double share = std::max(weights_ > 0.0 ? seen_ / weights_ : 0.0, least_share);
     return kSigmaOfMedian * WeighedMedian(std::move(errors_)) / std::sqrt(share);
@@ -68,8 +67,32 @@ class ErrorSpread {
  private:
   std::vector<Weighed> errors_;
   double weights_ = 0.0;
-  double squares_ = 0.0;
   double seen_ = 0.0;
+};
+
+// What the motions around one tell of SLAM's sigma there. Each tells it by its own residual and
+// share: some may be believed far less than others, and so have followed the sightings farther.
+class NearbySigma {
+ public:
+  // `error`: residual over the sigma that was believed; `believed`: that sigma over the common one.
+  void Add(double error, double share, double believed) {
+    const double weight = MotionWeight(share);
+    const double sigma = std::abs(error) / std::sqrt(std::max(share, kWhollyCounted));
+    over_believed_.push_back({sigma, weight});
+    over_common_.push_back({sigma * believed, weight});
+    weights_ += weight;
+    squares_ += weight * weight;
+  }
+  // Effective number of motions (Kish 1965, "Survey Sampling").
+  double Count() const { return squares_ > 0.0 ? weights_ * weights_ / squares_ : 0.0; }
+  double OverBelieved() const { return kSigmaOfMedian * WeighedMedian(over_believed_); }
+  double OverCommon() const { return kSigmaOfMedian * WeighedMedian(over_common_); }
+
+ private:
+  std::vector<Weighed> over_believed_;
+  std::vector<Weighed> over_common_;
+  double weights_ = 0.0;
+  double squares_ = 0.0;
 };
 
 }  // namespace
@@ -139,23 +162,26 @@ std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
                                           const std::vector<Eigen::Vector3d>& before) {
   std::vector<Eigen::Vector3d> growth(unit.size(), Eigen::Vector3d::Ones());
   std::vector<Eigen::Vector3d> errors;
-  for (const GroupLink& link : believed) {
-    errors.push_back(LinkError(link, map_from_group).cwiseQuotient(link.sigma));
+  std::vector<Eigen::Vector3d> grown;  // believed sigma over the common one
+  for (std::size_t i = 0; i < unit.size(); ++i) {
+    errors.push_back(LinkError(believed[i], map_from_group).cwiseQuotient(believed[i].sigma));
+    grown.push_back(believed[i].sigma.cwiseQuotient(unit[i].sigma.cwiseProduct(sigma)));
   }
   for (std::size_t i = 0; i < unit.size(); ++i) {
     const std::size_t end = std::min(i + kNear + 1, unit.size());
     for (int axis = 0; axis < 3; ++axis) {
-      ErrorSpread spread;
+      NearbySigma nearby;
       for (std::size_t j = i - std::min(i, kNear); j < end; ++j) {
-        spread.Add(errors[j][axis], shares_seen[j][axis]);
+        nearby.Add(errors[j][axis], shares_seen[j][axis], grown[j][axis]);
       }
-      if (spread.Count() <= kLeastNear) continue;
-      // Size of the errors over that expected.
-      const double ratio = std::move(spread).Sigma(kWhollyCounted);
-      const double times = ratio * believed[i].sigma[axis] / (unit[i].sigma[axis] * sigma[axis]);
-      // A sigma that has grown may also shrink: once it is right, the ratio is around 1.
-      const bool grown = !before.empty() && before[i][axis] > 1.0;
-      if ((ratio > 1.0 || grown) && times > kLeastGrowth) growth[i][axis] = times;
+      if (nearby.Count() <= kLeastNear) continue;
+      const double times = nearby.OverCommon();
+      // A sigma that has grown may also shrink: once it is right, the errors are as large as
+      // believed.
+      const bool was_grown = !before.empty() && before[i][axis] > 1.0;
+      if ((nearby.OverBelieved() > 1.0 || was_grown) && times > kLeastGrowth) {
+        growth[i][axis] = times;
+      }
     }
   }
   return growth;

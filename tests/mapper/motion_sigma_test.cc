@@ -233,5 +233,45 @@ TEST(MotionGrowth, FollowsErrorsThatAreSmallerThanBelieved) {
   EXPECT_EQ(growth_at(0.002), 1.0);
 }
 
+// One motion is believed to a hundred times the common sigma, and all around err by three times it,
+// as it does itself: the hundred is not multiplied by what its neighbours err by.
+TEST(MotionGrowth, DoesNotFeedOnWhatNeighboursAreBelievedTo) {
+  const std::vector<GroupLink> unit = ChainOf(21, Eigen::Vector3d::Ones()).links;
+  std::vector<GroupLink> believed = ChainOf(21, Eigen::Vector3d::Constant(0.001)).links;
+  std::vector<Eigen::Vector3d> before(20, Eigen::Vector3d::Ones());
+  before[10].x() = 100.0;
+  believed[10].sigma.x() = 0.1;
+  std::vector<Pose2> poses{{0.0, 0.0, 0.0}};
+  for (const GroupLink& link : unit) {
+    poses.push_back(poses.back() * link.first_from_second * Pose2{0.003, 0.0, 0.0});
+  }
+  const std::vector<Eigen::Vector3d> shares(20, Eigen::Vector3d::Constant(1.0));
+  const Eigen::Vector3d sigma = Eigen::Vector3d::Constant(0.001);
+  for (const Eigen::Vector3d& times : MotionGrowth(unit, believed, poses, shares, sigma, before)) {
+    EXPECT_EQ(times, Eigen::Vector3d::Ones());
+  }
+}
+
+// A motion believed to little has followed the sightings less than its neighbours, which are
+// believed to much: each shows the same error by its own share.
+TEST(MotionGrowth, CountsEachMotionsOwnShare) {
+  const std::vector<GroupLink> unit = ChainOf(21, Eigen::Vector3d::Ones()).links;
+  std::vector<GroupLink> believed = ChainOf(21, Eigen::Vector3d::Constant(0.001)).links;
+  std::vector<Eigen::Vector3d> before(20, Eigen::Vector3d::Ones());
+  std::vector<Eigen::Vector3d> shares(20, Eigen::Vector3d::Constant(1.0));
+  std::vector<Pose2> poses{{0.0, 0.0, 0.0}};
+  for (std::size_t i = 0; i < 20; ++i) {
+    const bool little = i % 2 == 0;
+    if (little) shares[i].x() = 0.25;
+    before[i].x() = little ? 1.0 : 20.0;
+    believed[i].sigma.x() = little ? 0.001 : 0.02;
+    const double error_m = 0.02 * std::sqrt(shares[i].x());
+    poses.push_back(poses.back() * unit[i].first_from_second * Pose2{error_m, 0.0, 0.0});
+  }
+  const Eigen::Vector3d sigma = Eigen::Vector3d::Constant(0.001);
+  const auto growth = MotionGrowth(unit, believed, poses, shares, sigma, before);
+  for (const std::size_t i : {9U, 10U}) EXPECT_NEAR(growth[i].x(), 20.0 * 1.4826, 0.1) << i;
+}
+
 }  // namespace
 }  // namespace depthgrid
