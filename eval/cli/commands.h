@@ -115,7 +115,7 @@ struct SweepArguments {
   int jobs = 0;                    // 0: as many as there are cores
   std::string shard;               // I/N; empty: all of it
   std::vector<std::string> merge;  // folders of parts
-  std::string reuse;               // folder of an earlier sweep; empty: none
+  std::vector<std::string> reuse;  // folders of earlier sweeps
   std::string executor = "local";
   std::string slurm_options;  // for sbatch
   int slurm_tasks = 0;        // 0: as many as have enough work each

@@ -159,8 +159,10 @@ void AddSweep(Program& program) {
       ->type_name("I/N");
   app->add_option("--merge", arguments->merge, "Join the parts in these folders into one table")
       ->type_name("DIR");
-  app->add_option("--reuse", arguments->reuse, "Take runs of the same values from this sweep")
-      ->type_name("OLD");
+  app->add_option("--reuse", arguments->reuse,
+                  "Take runs of the same values from this sweep; repeat for more")
+      ->type_name("OLD")
+      ->allow_extra_args(false);
   app->add_option("--executor", arguments->executor, "Where runs are done")
       ->check(CLI::IsMember({"local", "slurm"}))
       ->capture_default_str();

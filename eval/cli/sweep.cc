@@ -11,6 +11,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/cli/interrupts.h"
+#include "eval/cli/locked_sweep.h"
 #include "eval/compare/sweep_report.h"
 #include "eval/experiment/shipped.h"
 #include "eval/files/shell_word.h"
@@ -39,47 +40,6 @@ Shard ShardOf(const std::string& text) {
   throw InputError("--shard", fmt::format("is '{}', {}", text, kShardRule));
 }
 
-// The locked folder of a sweep. If it was created here, it is removed again when neither runs here
-// nor jobs of Slurm (which continue by themselves) could be started.
-class SweepFolder {
- public:
-  SweepFolder(const std::string& path, bool force) : path_(path) {
-    RequireReachable(path);
-    if (fs::exists(path) && !fs::is_directory(path)) {
-      throw InputError(path, "is a file, the output must be a folder");
-    }
-    if (!force && fs::exists(path) && !fs::is_empty(path) && !IsSweep()) {
-      throw InputError(path, "is not empty and holds no sweep; choose another folder, or --force");
-    }
-    if (!SweepDatabase::Exists(path)) RequireSweepNamesFree(path);
-    std::error_code error;
-    const bool created = fs::create_directories(path, error);
-    if (error) throw InputError(path, "cannot be created: " + error.message());
-    // If another program has the lock, the folder is its own, even if it was created here.
-    lock_.emplace(path);
-    created_ = created;
-  }
-  SweepFolder(const SweepFolder&) = delete;
-  SweepFolder& operator=(const SweepFolder&) = delete;
-
-  // False if someone has removed it meanwhile.
-  bool IsThere() const { return fs::exists(path_ + "/.lock"); }
-
- private:
-  // A sweep killed before its plan was written has only the lock.
-  bool IsSweep() const { return SweepDatabase::Exists(path_) || IsThere(); }
-
-  std::string path_;
-  bool created_ = false;
-  std::optional<SweepLock> lock_;
-  EndTask clean_{[this] {
-    std::error_code ignored;
-    if (created_ && IsThere() && !SweepDatabase::Exists(path_) && !HasSlurmJobs(path_)) {
-      fs::remove_all(path_, ignored);
-    }
-  }};
-};
-
 std::string DurationText(double seconds) {
   constexpr double kMinute = 60.0;
   constexpr double kHour = 3600.0;
@@ -94,7 +54,7 @@ struct WorkHere {
   std::size_t planned = 0;  // these and those that are finished
   int failed = 0;           // tried again
   int taken = 0;            // taken over from an earlier sweep
-  std::string taken_from;
+  std::vector<std::string> taken_from;
 };
 
 void Announce(const SweepPlan& plan, const WorkHere& work, const SweepContext& context) {
@@ -103,7 +63,9 @@ void Announce(const SweepPlan& plan, const WorkHere& work, const SweepContext& c
   if (work.planned < plan.runs.size()) fmt::print("; {} of them here", work.planned);
   const std::size_t done = work.planned - runs.size() - static_cast<std::size_t>(work.taken);
   if (done > 0) fmt::print("; {} done already", done);
-  if (!work.taken_from.empty()) fmt::print("; {} taken from {}", work.taken, work.taken_from);
+  if (!work.taken_from.empty()) {
+    fmt::print("; {} taken from {}", work.taken, fmt::join(work.taken_from, ", "));
+  }
   if (work.failed > 0) fmt::print("; {} failed and tried again", work.failed);
   fmt::print("\n");
   std::fflush(stdout);
@@ -121,11 +83,13 @@ void Announce(const SweepPlan& plan, const WorkHere& work, const SweepContext& c
 
 // Of a sweep that begins.
 WorkHere WorkAnew(const SweepPlan& plan, const SweepArguments& arguments,
-                  const EarlierSweep& earlier) {
+                  const std::vector<EarlierSweep>& earlier) {
   WorkHere work;
   work.taken_from = arguments.reuse;
   std::set<int> taken;
-  for (const RunOutcome& outcome : earlier.outcomes) taken.insert(outcome.run);
+  for (const EarlierSweep& sweep : earlier) {
+    for (const RunOutcome& outcome : sweep.outcomes) taken.insert(outcome.run);
+  }
   for (const PlannedRun& run : RunsOf(plan, ShardOf(arguments.shard))) {
     ++work.planned;
     if (taken.contains(run.run)) {
@@ -180,7 +144,7 @@ void RequireMergeAlone(const SweepArguments& arguments) {
 void Merge(const SweepArguments& arguments) {
   RequireMergeAlone(arguments);
   const std::string& output = arguments.common.output;
-  const SweepFolder folder(output, arguments.common.force);
+  const LockedSweep folder(output, arguments.common.force);
   MergeSweeps(arguments.merge, output);
   const SweepResults results = ReadSweep(output);
   if (const auto doubt = DoubtOfBuilds(output, results.environment)) Warn({*doubt});
@@ -200,27 +164,31 @@ void TabulateKnown(const std::string& folder) {
   }
 }
 
-// What `--reuse` names; nothing without it.
-EarlierSweep EarlierOf(const SweepArguments& arguments, const SweepPlan& plan) {
-  if (arguments.reuse.empty()) return {};
-  std::error_code error;  // as long as there is no output folder
-  if (fs::equivalent(arguments.reuse, arguments.common.output, error)) {
-    throw InputError("--reuse " + arguments.reuse,
-                     "is the output's own folder, whose runs stay without it");
+// What the `--reuse` name, in their order.
+std::vector<EarlierSweep> EarlierOf(const SweepArguments& arguments, const SweepPlan& plan) {
+  std::vector<EarlierSweep> earlier;
+  for (const std::string& folder : arguments.reuse) {
+    std::error_code error;  // as long as there is no output folder
+    if (fs::equivalent(folder, arguments.common.output, error)) {
+      throw InputError("--reuse " + folder,
+                       "is the output's own folder, whose runs stay without it");
+    }
+    earlier.push_back(EarlierSweepIn(folder, plan));
   }
-  return EarlierSweepIn(arguments.reuse, plan);
+  return earlier;
 }
 
 // Closes the database before it returns.
 SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& plan,
-                              const EarlierSweep& earlier, SweepContext context) {
+                              const std::vector<EarlierSweep>& earlier, SweepContext context) {
   const std::string& output = arguments.common.output;
   SweepDatabase database =
       OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force);
   // With `stop`, their results also affected the number of seeds.
   const std::vector<int> never_done = database.UnfinishedRuns();
   if (!plan.stop.Enabled()) database.PlanFailedAgain();
-  const int taken = TakeOver(earlier, database);
+  int taken = 0;
+  for (const EarlierSweep& sweep : earlier) taken += TakeOver(sweep, database);
   const std::vector<int> to_do = database.UnfinishedRuns();
   const auto failed = std::count_if(to_do.begin(), to_do.end(), [&](int run) {
     return !std::binary_search(never_done.begin(), never_done.end(), run);
@@ -249,24 +217,49 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
   return database.Results();
 }
 
+// What `do_runs` returns, with rendered depth and scans kept in `cache`. When the disk is full, a
+// cache that is the sweep's `own` makes room for the results: it is removed, and the other runs are
+// done without. One that the user chose may be of use to other sweeps and stays.
+SweepResults WithCache(const std::string& cache, bool own,
+                       const std::function<SweepResults(const std::string& cache)>& do_runs) {
+  try {
+    return do_runs(cache);
+  } catch (const DiskFullError& error) {
+    if (cache.empty() || InterruptExitCode()) throw;
+    if (!own) {
+      throw DiskFullError(
+          fmt::format("{}; if its cache {} takes the room, remove that or choose "
+                      "another with --cache DIR, or --no-cache",
+                      error.what(), cache));
+    }
+    if (!fs::exists(cache)) throw;
+    Warn({fmt::format("{}; {} is removed, and the sweep goes on without it", error.what(), cache)});
+    RemoveSweepCache(cache);
+    return do_runs("");
+  }
+}
+
 // Runs the sweep in its folder, which exists and is locked.
 void SweepIn(const std::string& output, const SweepArguments& arguments, const SweepPlan& plan,
-             const EarlierSweep& earlier, SweepContext context) {
+             const std::vector<EarlierSweep>& earlier, SweepContext context) {
   // By default rendered depth and scans are cached in the sweep's folder, so that they survive a
   // kill.
   const bool own_cache = context.cache_folder.empty() && !arguments.common.no_cache;
   if (own_cache) context.cache_folder = output + "/cache";
-  const SweepResults results = DoUnfinishedRuns(arguments, plan, earlier, context);
+  const SweepResults results = WithCache(context.cache_folder, own_cache, [&](auto cache) {
+    context.cache_folder = cache;
+    return DoUnfinishedRuns(arguments, plan, earlier, context);
+  });
   ProgressFile(output).NoteNow({results.planned_runs, results.planned_runs});
-  if (own_cache) RemoveSweepCache(context.cache_folder);
+  if (own_cache) RemoveSweepCache(output + "/cache");
   Summarise(results);
 }
 
 void SweepHere(const SweepArguments& arguments, const SweepPlan& plan,
-               const EarlierSweep& earlier) {
+               const std::vector<EarlierSweep>& earlier) {
   const std::string& output = arguments.common.output;
   ShardOf(arguments.shard);  // checked before the folder is created
-  const SweepFolder folder(output, arguments.common.force);
+  const LockedSweep folder(output, arguments.common.force);
   SweepContext context;
   context.threads = ThreadsOr(arguments.jobs);
   context.cache_folder = CacheFolder(arguments.common);
@@ -293,7 +286,9 @@ std::string PartCommand(const SweepArguments& arguments, const std::string& swee
   for (const std::string& set : arguments.common.set) command += " --set " + ShellWord(set);
   const std::string cache = CacheFolder(arguments.common);
   if (!cache.empty()) command += " --cache " + ShellWord(absolute(cache));
-  if (!arguments.reuse.empty()) command += " --reuse " + ShellWord(absolute(arguments.reuse));
+  for (const std::string& earlier : arguments.reuse) {
+    command += " --reuse " + ShellWord(absolute(earlier));
+  }
   if (arguments.common.no_cache) command += " --no-cache";
   return command;
 }
@@ -335,7 +330,7 @@ void SweepOnSlurm(const SweepArguments& arguments, const SweepPlan& plan,
                   const std::string& sweep_file) {
   if (!arguments.shard.empty()) throw InputError("--shard", "is what --executor slurm decides");
   const std::string output = fs::absolute(arguments.common.output).lexically_normal().string();
-  const SweepFolder folder(output, arguments.common.force);
+  const LockedSweep folder(output, arguments.common.force);
   SweepContext context;
   context.cache_folder = CacheFolder(arguments.common);
   SlurmJob job;
@@ -377,7 +372,7 @@ void Sweep(const SweepArguments& arguments) {
   RequireRooms(plan);
   RequireCacheElsewhere(arguments.common);
   RequireUsableCache(CacheFolder(arguments.common));
-  const EarlierSweep earlier = EarlierOf(arguments, plan);
+  const std::vector<EarlierSweep> earlier = EarlierOf(arguments, plan);
   Warn(plan.warnings);
   Warn(DoubtsOfPaths(plan, ThreadsOr(arguments.jobs)));
   if (arguments.dry_run) {

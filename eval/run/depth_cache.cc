@@ -15,6 +15,7 @@
 #include "eval/files/hash.h"
 #include "mapper/core/error.h"
 #include "mapper/io/end_task.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid {
 namespace {
@@ -138,6 +139,12 @@ void RemoveOldHalves(const std::vector<fs::directory_entry>& files) {
 
 }  // namespace
 
+void RefuseCache(const std::string& folder, const std::error_code& error) {
+  const std::string why = "cannot be used as a cache: " + error.message();
+  if (IsDiskFull(error.value())) throw DiskFullError(folder + ": " + why);
+  throw InputError(folder, why);
+}
+
 DepthCache::DepthCache(const std::string& folder, const std::string& scene_hash,
                        const PinholeCamera& camera, RayIsa isa, std::uint64_t size_limit_bytes)
     : root_(folder),
@@ -147,7 +154,7 @@ DepthCache::DepthCache(const std::string& folder, const std::string& scene_hash,
       size_limit_bytes_(size_limit_bytes) {
   std::error_code error;
   fs::create_directories(folder_, error);
-  if (error) throw InputError(folder, "cannot be used as a cache: " + error.message());
+  if (error) RefuseCache(folder, error);
   const std::vector<fs::directory_entry> files = FilesIn(root_);
   RemoveOldHalves(files);
   for (const Entry& entry : EntriesOf(files)) used_bytes_ += entry.bytes;

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <system_error>
 
 #include "mapper/core/camera.h"
 #include "mapper/core/pose3.h"
@@ -17,12 +18,17 @@ namespace depthgrid {
 
 constexpr std::uint64_t kDefaultCacheBytes = std::uint64_t{8} << 30U;
 
+// Throws because the folder of a cache cannot be made: DiskFullError where there is no room, else
+// InputError.
+[[noreturn]] void RefuseCache(const std::string& folder, const std::error_code& error);
+
 class DepthCache {
  public:
   // Frames of one scene seen by one camera, in `folder`, which several programs may use at once.
   // All entries of the folder count towards `size_limit_bytes`; the least recently used are removed
   // first. Entries that killed programs did not finish are removed now, once they are an hour old;
-  // folders that cannot be read are ignored.
+  // folders that cannot be read are ignored. Throws as RefuseCache() when its folder cannot be
+  // made.
   DepthCache(const std::string& folder, const std::string& scene_hash, const PinholeCamera& camera,
              RayIsa isa, std::uint64_t size_limit_bytes = kDefaultCacheBytes);
 

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "eval/files/hash.h"
+#include "eval/run/depth_cache.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 
@@ -102,7 +103,7 @@ ScanCache::ScanCache(const std::string& folder, std::uint64_t size_limit_bytes)
     : folder_(folder), size_limit_bytes_(size_limit_bytes) {
   std::error_code error;
   fs::create_directories(folder_, error);
-  if (error) throw InputError(folder, "cannot be used as a cache: " + error.message());
+  if (error) RefuseCache(folder, error);
   RemoveHalves(folder, IsScans);
 }
 

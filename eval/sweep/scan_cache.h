@@ -16,7 +16,8 @@ constexpr std::uint64_t kDefaultScanCacheBytes = std::uint64_t{4} << 30U;
 class ScanCache {
  public:
   // Files in `folder`, which several programs may use at once. The least recently used are removed
-  // when a new one would exceed the limit. Throws InputError when the folder cannot be made.
+  // when a new one would exceed the limit. Throws as RefuseCache() when the folder cannot be
+  // made.
   ScanCache(const std::string& folder, std::uint64_t size_limit_bytes = kDefaultScanCacheBytes);
 
   // Empty when the set is missing, damaged, or larger than the limit; the limit also applies here,

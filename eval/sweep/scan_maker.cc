@@ -9,6 +9,7 @@
 #include "eval/run/synthetic_source.h"
 #include "eval/sweep/parallel.h"
 #include "eval/sweep/scan_cache.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid {
 namespace {
@@ -62,6 +63,8 @@ std::vector<DepthJob> JobsOf(const std::vector<ScanSet*>& sets, const std::strin
       job.sets.push_back(set);
       job.scanners.push_back(std::move(scanner));
       set->scans.resize(set->slam.live.size());
+    } catch (const DiskFullError&) {  // of the cache's folder: no set is to blame
+      throw;
     } catch (const std::exception& error) {
       set->failure = error.what();
     }

@@ -19,7 +19,8 @@ struct ScanMakerContext {
 // Throws InputError when the folder cannot be used as a cache, before the first set is made.
 void RequireUsableCache(const std::string& cache_folder);
 
-// Fills `scans` or `failure` of each set, except of those that already have a failure.
+// Fills `scans` or `failure` of each set, except of those that already have a failure. Throws
+// DiskFullError when there is no room for the folders of the cache.
 void MakeScans(const std::vector<ScanSet*>& sets, const ScanMakerContext& context);
 
 }  // namespace depthgrid

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "mapper/core/error.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid {
 
@@ -22,7 +23,14 @@ auto Reading(const std::string& path, const Work& work) {
   }
 }
 
-// Failures such as a full disk or a read-only folder are not bad input, except a damaged file.
+// SQLite has a code of its own for the failure to enlarge the file that its readers share.
+inline bool IsDiskFull(const SQLite::Exception& error) {
+  return error.getErrorCode() == SQLITE_FULL ||
+         error.getExtendedErrorCode() == SQLITE_IOERR_SHMSIZE;
+}
+
+// Failures such as a full disk (DiskFullError) or a read-only folder are not bad input, except a
+// damaged file.
 template <typename Work>
 void Writing(const std::string& path, const Work& work) {
   try {
@@ -31,7 +39,9 @@ void Writing(const std::string& path, const Work& work) {
     if (error.getErrorCode() == SQLITE_CORRUPT || error.getErrorCode() == SQLITE_NOTADB) {
       throw InputError(path, std::string("cannot be read: ") + error.what());
     }
-    throw std::runtime_error(fmt::format("{}: cannot be written: {}", path, error.what()));
+    const std::string message = fmt::format("{}: cannot be written: {}", path, error.what());
+    if (IsDiskFull(error)) throw DiskFullError(message);
+    throw std::runtime_error(message);
   }
 }
 

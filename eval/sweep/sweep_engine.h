@@ -21,7 +21,8 @@ struct SweepContext {
 
 // Every outcome is written to the database as soon as it is known. The final table depends neither
 // on the number of threads nor on which runs were already finished. Returns the warnings of the
-// runs done here (RunDoubts).
+// runs done here (RunDoubts). Throws DiskFullError when an outcome or the cache's folders cannot be
+// written for lack of room.
 std::vector<std::string> DoRuns(const SweepPlan& plan, SweepDatabase& database,
                                 const SweepContext& context);
 

@@ -9,6 +9,7 @@
 #include "eval/sweep/sweep_metrics.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/error.h"
+#include "mapper/io/file.h"
 
 namespace depthgrid {
 namespace {
@@ -92,6 +93,8 @@ Pilot PilotOf(const SweepPlan& plan, const std::vector<int>& runs, const SweepCo
         pilot.times = TimesOfFirstFrames(options, context);
       });
       return pilot;
+    } catch (const DiskFullError&) {
+      throw;
     } catch (const std::exception& error) {
       if (pilot.failure.empty()) pilot.failure = error.what();
     }

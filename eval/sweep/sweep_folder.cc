@@ -123,6 +123,21 @@ void AddRuns(const SweepResults& results, std::map<int, FinishedRun>& runs) {
   }
 }
 
+// What to do about a folder that holds another sweep, and where only the values of the axes differ,
+// so that runs can be taken over.
+struct OtherSweepRemedies {
+  std::string of_any;
+  std::string of_axes;
+};
+
+void RequireThisSweep(const std::string& folder, const Environment& there, const Environment& here,
+                      const OtherSweepRemedies& remedies) {
+  for (const std::string& respect : WhatMakesASweep()) {
+    RequireSameSweep(folder, there, here, {respect},
+                     respect == "sweep" ? remedies.of_axes : remedies.of_any);
+  }
+}
+
 // Whether `whole` is what merging the parts gives, whose environment that is.
 bool IsMergeOf(const SweepResults& whole, const std::vector<SweepResults>& parts,
                const Environment& environment) {
@@ -207,8 +222,10 @@ SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan
   const Environment here = EnvironmentOf(plan, shard);
   if (SweepDatabase::Exists(folder)) {
     SweepDatabase database = SweepDatabase::Open(folder);
-    RequireSameSweep(folder, database.Environment(), here, WhatMakesASweep(),
-                     "choose another folder, or remove this one");
+    RequireThisSweep(folder, database.Environment(), here,
+                     {"choose another folder, or remove this one",
+                      "choose another folder, where --reuse takes over its runs, or remove this "
+                      "one"});
     RequireSameSweep(folder, database.Environment(), here, {"shard"},
                      "choose another folder, or remove this one");
     return database;
@@ -228,8 +245,11 @@ void MergeSweeps(const std::vector<std::string>& folders, const std::string& tar
   for (const std::string& folder : folders) {
     parts.push_back(ReadSweep(folder));
     const SweepResults& part = parts.back();
-    RequireSameSweep(folder, part.environment, parts[0].environment, WhatMakesASweep(),
-                     "parts are of one sweep");
+    RequireThisSweep(
+        folder, part.environment, parts[0].environment,
+        {"parts are of one sweep",
+         "parts are of one sweep; a sweep of all values with a --reuse for each folder "
+         "joins several"});
     const auto missing = part.planned_runs - static_cast<int>(part.rows());
     if (missing > 0) {
       throw InputError(folder, fmt::format("is not finished: {} of {} runs are missing", missing,

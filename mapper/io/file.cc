@@ -70,8 +70,10 @@ std::function<void(std::ostream&)> Writing(std::string_view content) {
 }
 
 [[noreturn]] void FailWriting(const std::string& path, int error) {
-  throw std::runtime_error(
-      fmt::format("{}: cannot be written: {}", path, error == 0 ? "failed" : std::strerror(error)));
+  const std::string message =
+      fmt::format("{}: cannot be written: {}", path, error == 0 ? "failed" : std::strerror(error));
+  if (IsDiskFull(error)) throw DiskFullError(message);
+  throw std::runtime_error(message);
 }
 
 // The error number if something was lost, else 0; some file systems cannot sync.
@@ -80,7 +82,7 @@ int FailureToSync(const std::string& path) {
   if (file < 0) return 0;
   const int failure = ::fsync(file) == 0 ? 0 : errno;
   ::close(file);
-  return failure == EIO || failure == ENOSPC || failure == EDQUOT ? failure : 0;
+  return failure == EIO || IsDiskFull(failure) ? failure : 0;
 }
 
 void WriteBesideAndRename(const std::string& path, const std::function<void(std::ostream&)>& write,
@@ -107,6 +109,8 @@ void WriteBesideAndRename(const std::string& path, const std::function<void(std:
 }
 
 }  // namespace
+
+bool IsDiskFull(int error_number) { return error_number == ENOSPC || error_number == EDQUOT; }
 
 void RequireFile(const std::string& path) {
   std::error_code error;

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <functional>
 #include <iosfwd>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,14 @@ namespace depthgrid {
 
 // Larger than any file the program reads whole (a laser log of hours is about 500 MB).
 constexpr std::size_t kMaxFileBytes = std::size_t{1} << 30U;
+
+// A file could not be written because the disk, or the user's share of it, is full.
+class DiskFullError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+// Whether an error number (errno) says so.
+bool IsDiskFull(int error_number);
 
 // Throws InputError when the file is missing, a folder, or no regular file.
 void RequireFile(const std::string& path);
@@ -28,8 +37,8 @@ void RequireUncompressed(const std::string& path);
 std::string ReadTextFile(const std::string& path, std::size_t max_bytes = kMaxFileBytes);
 
 // Writes beside `path` and renames, so that a reader sees the old file or the whole new one, never
-// a part. Throws std::runtime_error (a failure while running, not bad input); then the old file is
-// there and nothing beside it.
+// a part. Throws std::runtime_error (a failure while running, not bad input), DiskFullError where
+// there is no room; then the old file is there and nothing beside it.
 void WriteFile(const std::string& path, std::string_view content);
 // The same for what `write` puts into the stream, so that a large file need not be in memory.
 void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write);

@@ -52,6 +52,33 @@ TEST_F(SweepReuse, GivesTheTableOfASweepThatDidAllRuns) {
   ExpectSameTable("joined", "anew");
 }
 
+// Sweeps of other seeds or values are joined by one of all, which computes nothing.
+TEST_F(SweepReuse, JoinsSeveralSweeps) {
+  WriteSweep("seeds.yaml", "mapper.fusion.gain: [0, 0.5]\n  seed: {seeds: 1, first: 3}");
+  WriteSweep("gain.yaml", "mapper.fusion.gain: [0.5, 1]\n  seed: {seeds: 3}");
+  WriteSweep("all.yaml", "mapper.fusion.gain: [0, 0.5, 1]\n  seed: {seeds: 3}");
+  Succeed("sweep ./old.yaml -o old");
+  Succeed("sweep ./seeds.yaml -o seeds");
+  Succeed("sweep ./gain.yaml -o gain");
+  const Outcome outcome = Program("sweep --reuse old --reuse seeds --reuse gain ./all.yaml -o all");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out,
+              HasSubstr("9 runs, 3 points x 3 seeds; 9 taken from old, seeds, gain\n"));
+  Succeed("sweep ./all.yaml -o anew");
+  ExpectSameTable("all", "anew");
+  // Of a run that several have, the first is taken: gain 0.5, seed 1.
+  EXPECT_EQ(ReadSweep(Path("old")).times[0].values[2], ReadSweep(Path("all")).times[0].values[3]);
+  const Outcome other = Program("sweep ./all.yaml -o old");
+  EXPECT_EQ(other.exit_code, 2);
+  EXPECT_THAT(other.err, HasSubstr("here; choose another folder, where --reuse takes over its runs,"
+                                   " or remove this one\n"));
+  ExpectRefusal("sweep --merge old seeds -o merged",
+                {"seeds: holds another sweep",
+                 "parts are of one sweep; a sweep of all values with a "
+                 "--reuse for each folder joins several\n"});
+  ExpectRefusal("sweep ./all.yaml --reuse old --reuse none -o out", {"none: is no sweep's folder"});
+}
+
 // Other runs of the old sweep have scores that these have not.
 TEST_F(SweepReuse, HasNoColumnsOfRunsThatItDoesNotTake) {
   WriteSweep("both.yaml", "metrics.navigation: [true, false]");
