@@ -171,7 +171,7 @@ void ShowScene(const ScenesArguments& arguments) {
   }
   const std::string file = ResolveName(arguments.scene, ShippedKind::kScene);
   RefuseSweep(file);
-  const Scene scene = LoadScene(file);
+  const Scene scene = LoadNamedScene(arguments.scene);
   const std::vector<ScenePath> paths = PathsOf(scene);
   fmt::print("{}", Facts(scene));
   if (const auto doubt = DoubtOfUnits(scene)) fmt::print("warning: {}\n", *doubt);

@@ -22,7 +22,7 @@ std::string SizeText(const TriangleMesh& mesh) {
 }
 
 void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>& rows) {
-  const Scene scene = LoadScene(ResolveName(name, ShippedKind::kScene));
+  const Scene scene = LoadNamedScene(name);
   std::string first_of_scene = name;
   std::string size = SizeText(scene.mesh);
   std::string triangles = fmt::format("{}", scene.mesh.triangles.size());

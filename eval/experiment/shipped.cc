@@ -101,6 +101,10 @@ std::string ResolveName(const std::string& name, ShippedKind kind, const std::st
   throw InputError(name, std::string("no shipped ") + WordFor(kind) + " has this name" + hint);
 }
 
+Scene LoadNamedScene(const std::string& name) {
+  return LoadScene(ResolveName(name, ShippedKind::kScene), ShippedFolder(ShippedKind::kScene));
+}
+
 std::string ResolveNameAt(const std::string& place, const std::string& name, ShippedKind kind,
                           const std::string& base_folder) {
   try {

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/scene/scene.h"
+
 namespace depthgrid {
 
 enum class ShippedKind { kScene, kExperiment, kSweep };
@@ -21,6 +23,9 @@ std::string ResolveName(const std::string& name, ShippedKind kind,
 // The same for a name given in another file at `place`, with which error messages begin.
 std::string ResolveNameAt(const std::string& place, const std::string& name, ShippedKind kind,
                           const std::string& base_folder = "");
+
+// The scene of that name, as ResolveName(); it may include the parts of the shipped scenes.
+Scene LoadNamedScene(const std::string& name);
 
 // Names of all shipped files of a kind, sorted. Throws InputError when there are none.
 std::vector<std::string> ShippedNames(ShippedKind kind);

@@ -52,7 +52,7 @@ std::string HashWithMovers(const Scene& scene) {
 
 // The scene with the experiment's movers.
 Scene SceneOf(const ExperimentOptions& options) {
-  Scene scene = LoadScene(ResolveName(options.scene, ShippedKind::kScene));
+  Scene scene = LoadNamedScene(options.scene);
   KeepMovers(options.movers, scene.movers);
   return scene;
 }

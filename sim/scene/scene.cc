@@ -74,9 +74,11 @@ PointLight DefaultLight(const Scene& scene) {
   return light;
 }
 
-SceneFile ReadAsFile(const std::string& path) {
+SceneFile ReadAsFile(const std::string& path, const std::string& parts_folder) {
   const std::string extension = LowerCaseExtension(path);
-  if (extension == ".yaml" || extension == ".yml") return ReadSceneFile(path);
+  if (extension == ".yaml" || extension == ".yml") {
+    return ReadSceneFile(path, parts_folder);
+  }
   if (!IsMeshFile(path)) {
     throw InputError(
         path, fmt::format("is neither a scene (.yaml) nor a mesh file ({})", MeshExtensions()));
@@ -91,8 +93,8 @@ SceneFile ReadAsFile(const std::string& path) {
 
 }  // namespace
 
-Scene LoadScene(const std::string& path) {
-  SceneFile file = ReadAsFile(path);
+Scene LoadScene(const std::string& path, const std::string& parts_folder) {
+  SceneFile file = ReadAsFile(path, parts_folder);
   Scene scene = std::move(file.scene);
   RequireSaneMesh(scene.mesh, "scene", path);
   for (const Mover& mover : scene.movers) RequireSaneMesh(mover.mesh, "mover", mover.options.place);

@@ -39,6 +39,7 @@ struct Scene {
 
 // Reads a scene file (.yaml, docs/scenes.md) or a mesh file (.obj .ply .stl .gltf .glb .dae).
 // Throws InputError for bad input; the result has triangles, finite vertices and a floor.
-Scene LoadScene(const std::string& path);
+// Files that it includes and that are not beside it may lie in `parts_folder`; "": none do.
+Scene LoadScene(const std::string& path, const std::string& parts_folder = "");
 
 }  // namespace depthgrid

@@ -80,8 +80,9 @@ struct Group {
 
 class SceneReader {
  public:
-  SceneFile Read(const std::string& path) {
+  SceneFile Read(const std::string& path, const std::string& parts_folder) {
     path_ = path;
+    parts_folder_ = parts_folder;
     Config config = Config::FromFile(path);
     RequireKnownKeys(config);
     scene_.materials.push_back(MaterialOptions().Make("default"));
@@ -122,7 +123,7 @@ class SceneReader {
     const std::string place = scene.PlaceOfKey("include");
     const std::vector<std::string> names = scene.Texts("include");
     if (names.empty()) throw InputError(place, "include is '[]', must be a file or a list of them");
-    for (const std::string& name : names) ReadInclude(ExistingFile("include", name, place));
+    for (const std::string& name : names) ReadInclude(IncludedFile(name, place));
   }
 
   // An included file may contain only materials and groups.
@@ -145,6 +146,15 @@ class SceneReader {
     std::error_code ignored;
     if (std::filesystem::exists(path, ignored)) return path.string();
     throw InputError(place, fmt::format("{} is '{}': no such file", key, name));
+  }
+
+  std::string IncludedFile(const std::string& name, const std::string& place) const {
+    std::error_code ignored;
+    const auto beside = std::filesystem::path(path_).parent_path() / name;
+    const auto part = std::filesystem::path(parts_folder_) / name;
+    const bool is_part = !parts_folder_.empty() && !std::filesystem::exists(beside, ignored) &&
+                         std::filesystem::exists(part, ignored);
+    return is_part ? part.string() : ExistingFile("include", name, place);
   }
 
   void ReadMaterials(Config materials) {
@@ -348,12 +358,15 @@ class SceneReader {
   }
 
   std::string path_;
+  std::string parts_folder_;  // may be ""
   Scene scene_;
   std::vector<Group> groups_;
 };
 
 }  // namespace
 
-SceneFile ReadSceneFile(const std::string& path) { return SceneReader().Read(path); }
+SceneFile ReadSceneFile(const std::string& path, const std::string& parts_folder) {
+  return SceneReader().Read(path, parts_folder);
+}
 
 }  // namespace depthgrid

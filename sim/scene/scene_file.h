@@ -12,6 +12,7 @@ struct SceneFile {
   Scene scene;
   std::optional<double> floor_z_m;  // as stated
 };
-SceneFile ReadSceneFile(const std::string& path);
+// Included files may also lie in `parts_folder`; "": none do.
+SceneFile ReadSceneFile(const std::string& path, const std::string& parts_folder = "");
 
 }  // namespace depthgrid

@@ -142,6 +142,19 @@ TEST_F(SceneFacts, ThePlanTellsManyPathsApart) {
   }
 }
 
+TEST_F(SceneFacts, AFileMayIncludeThePartsOfTheShippedScenes) {
+  const std::string scene =
+      "include: parts/people.yaml\n" + std::string(kRoom) +
+      "movers:\n  guest:\n    shapes: [{shape: use, group: person}]\n"
+      "    there_and_back: true\n    waypoints: [{at: [1, 1]}, {at: [2, 1]}]\n";
+  Write("guests.yaml", scene);
+  EXPECT_THAT(Program("scenes ./guests.yaml").out, HasSubstr("guest"));
+  // One beside the scene comes first.
+  std::filesystem::create_directory(Path("parts"));
+  Write("parts/people.yaml", "groups: {}\n");
+  ExpectRefusal("scenes ./guests.yaml", {"group 'person' is not in 'groups'"});
+}
+
 TEST_F(SceneFacts, ForceWithoutAPictureIsSaid) {
   const std::string idle = "depthgrid: warning: --force: has no effect without --plan\n";
   EXPECT_EQ(Program("scenes --force").err, idle);
