@@ -39,8 +39,27 @@ std::span<const double> MostAlike(const std::vector<double>& heights_m) {
   return most;
 }
 
+std::size_t CountBelow(const Trajectory& trajectory, double z_m) {
+  return static_cast<std::size_t>(std::count_if(
+      trajectory.begin(), trajectory.end(),
+      [&](const StampedPose& pose) { return pose.world_from_camera.translation.z() < z_m; }));
+}
+
 // Rounds off errors of the single-precision mesh; + 0.0 makes -0 positive.
 double InMillimetres(double z_m) { return std::round(1000.0 * z_m) / 1000.0 + 0.0; }
+
+// Of a path most of which is below the floor, above the surface at `level_z_m` if there is one.
+std::string BelowText(std::size_t below, std::size_t poses, const Scene& scene,
+                      const std::optional<double>& level_z_m) {
+  const std::string what =
+      fmt::format("{} of {} are below the floor of the maps, z = {:g} m", below,
+                  Counted(poses, "pose"), InMillimetres(scene.floor_z_m));
+  if (!level_z_m || !HasFloorAt(scene.mesh, *level_z_m)) {
+    return what + "; floor_z_m in the scene's file must be that of the path's storey";
+  }
+  return fmt::format("{}; floor_z_m: {:g} in the scene's file takes the storey that they are in",
+                     what, *level_z_m);
+}
 
 }  // namespace
 
@@ -48,8 +67,14 @@ std::optional<std::string> DoubtOfStorey(const Trajectory& trajectory, const Sce
                                          const RayScene& rays) {
   const std::vector<double> heights_m = HeightsBelow(trajectory, rays);
   const std::span<const double> level_m = MostAlike(heights_m);
-  if (2 * level_m.size() <= trajectory.size()) return {};
-  const double z_m = InMillimetres(level_m[level_m.size() / 2]);
+  const bool has_level = 2 * level_m.size() > trajectory.size();
+  const double z_m = has_level ? InMillimetres(level_m[level_m.size() / 2]) : 0.0;
+  const std::size_t below = CountBelow(trajectory, scene.floor_z_m);
+  if (2 * below > trajectory.size()) {
+    return BelowText(below, trajectory.size(), scene,
+                     has_level ? std::optional(z_m) : std::nullopt);
+  }
+  if (!has_level) return {};
   if (z_m < scene.floor_z_m + kLeastStoreyM || !HasFloorAt(scene.mesh, z_m)) return {};
   return fmt::format(
       "{} of {} are above a level surface at z = {:g} m, but maps are of the storey whose floor is "

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "mapper/core/angle.h"
@@ -16,6 +17,7 @@ constexpr double kFloorShareOfLargest = 0.25;    // below that it is a pit, not 
 constexpr double kCeilingShareOfFootprint = 0.25;
 constexpr double kStandingRoomM = 1.5;
 constexpr double kFloorToleranceM = 0.02;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 enum class Facing { kUp, kDown };
 
@@ -91,6 +93,31 @@ std::optional<double> FloorAmong(std::vector<LevelPatch> patches, double footpri
   return {};
 }
 
+// The height of the highest large slab between two heights.
+std::optional<double> HighestSlab(const std::vector<LevelPatch>& all, double lowest_m,
+                                  double highest_m, double least_m2) {
+  std::vector<LevelPatch> patches = all;
+  std::erase_if(patches, [&](const LevelPatch& patch) {
+    return patch.z_m < lowest_m || patch.z_m >= highest_m;
+  });
+  const std::vector<double> slabs_m2 = SlabAreas(patches);
+  for (std::size_t i = patches.size(); i-- > 0;) {
+    if (slabs_m2[i] >= least_m2) return MedianHeight(patches, i, slabs_m2[i]);
+  }
+  return {};
+}
+
+// The lowest height from `lowest_m` on where the next storey's floor may be; infinite without one.
+double NextFloorM(const TriangleMesh& mesh, double lowest_m) {
+  std::vector<LevelPatch> patches = LevelPatches(mesh, Facing::kUp);
+  std::erase_if(patches, [&](const LevelPatch& patch) { return patch.z_m < lowest_m; });
+  const std::vector<double> slabs_m2 = SlabAreas(patches);
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    if (slabs_m2[i] >= kFloorShareOfFootprint * FootprintM2(mesh)) return patches[i].z_m;
+  }
+  return kInfinity;
+}
+
 }  // namespace
 
 std::optional<double> FindFloor(const TriangleMesh& mesh) {
@@ -111,14 +138,11 @@ bool HasFloorAt(const TriangleMesh& mesh, double z_m) {
 }
 
 std::optional<double> FindCeiling(const TriangleMesh& mesh, double floor_z_m) {
-  const std::vector<LevelPatch> patches = LevelPatches(mesh, Facing::kDown);
-  const std::vector<double> slabs_m2 = SlabAreas(patches);
   const double least_m2 = kCeilingShareOfFootprint * FootprintM2(mesh);
-  for (std::size_t i = patches.size(); i-- > 0;) {
-    if (patches[i].z_m < floor_z_m + kStandingRoomM) break;
-    if (slabs_m2[i] >= least_m2) return MedianHeight(patches, i, slabs_m2[i]);
-  }
-  return {};
+  const double lowest_m = floor_z_m + kStandingRoomM;
+  const std::vector<LevelPatch> patches = LevelPatches(mesh, Facing::kDown);
+  const auto in_storey = HighestSlab(patches, lowest_m, NextFloorM(mesh, lowest_m), least_m2);
+  return in_storey ? in_storey : HighestSlab(patches, lowest_m, kInfinity, least_m2);
 }
 
 }  // namespace depthgrid

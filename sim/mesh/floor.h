@@ -16,7 +16,9 @@ std::optional<double> FindFloor(const TriangleMesh& mesh);
 bool HasFloorAt(const TriangleMesh& mesh, double z_m);
 
 // The height of the highest level surface facing down that covers a quarter of the footprint and
-// leaves room to stand under it; nothing for open worlds.
+// leaves room to stand under it; nothing for open worlds. Where there is one below the next
+// storey's floor (as large a level surface facing up, with room to stand under it), it is of this
+// storey.
 std::optional<double> FindCeiling(const TriangleMesh& mesh, double floor_z_m);
 
 }  // namespace depthgrid

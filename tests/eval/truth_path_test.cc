@@ -128,12 +128,17 @@ TEST_F(TruthPaths, APathInAnotherStoreyIsWarnedOf) {
       "maps are of the storey whose floor is at 0 m; floor_z_m: 2.6 in the scene's file takes the "
       "upper one";
   const std::string with = " ./small.yaml --force --set scene=./house.yaml --set frames=2 ";
+  const std::string above = " ./small.yaml --force --set scene=./upper.yaml --set frames=2 ";
   for (const char* command : {"run", "render --no-colour", "ablate --seeds 1"}) {
     const std::string to = std::string(command) + with + "-o out_" + std::string(command, 3);
     EXPECT_THAT(Program(to + " --set trajectory=up").err, HasSubstr(said)) << command;
     EXPECT_THAT(Program(to + " --set trajectory=down").err, Not(HasSubstr("storey"))) << command;
-    EXPECT_THAT(Program(to + " --set trajectory=up --set scene=./upper.yaml").err,
-                Not(HasSubstr("storey")));
+    const std::string upper = std::string(command) + above + "-o upper_" + std::string(command, 3);
+    EXPECT_EQ(Program(upper + " --set trajectory=up").err, "");
+    EXPECT_THAT(Program(upper).err,
+                HasSubstr("upper.yaml:11: trajectory 'down': 2 of 2 poses are below the floor of "
+                          "the maps, z = 2.6 m; floor_z_m: 0 in the scene's file takes the storey "
+                          "that they are in"));
   }
   Write("sweep.yaml",
         "experiment: ./small.yaml\nset: {scene: ./house.yaml, frames: 2}\n"
@@ -141,6 +146,8 @@ TEST_F(TruthPaths, APathInAnotherStoreyIsWarnedOf) {
   const std::string swept = Program("sweep ./sweep.yaml --dry-run -o sweep").err;
   EXPECT_THAT(swept, HasSubstr(said));
   EXPECT_EQ(std::count(swept.begin(), swept.end(), '\n'), 1) << swept;
+  EXPECT_THAT(Program("scenes ./upper.yaml").out,
+              ContainsRegex("warning: .*upper.yaml:11: trajectory 'down': [0-9]+ of"));
   const std::string look = " -0.7071068 0 0 0.7071068\n";
   Write("path.txt", "0 1.5 1.5 3.7" + look + "0.1 1.5 1.6 3.7" + look);
   EXPECT_THAT(Program("run" + with + "-o file --set trajectory=./path.txt").err,

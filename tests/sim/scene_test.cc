@@ -339,6 +339,22 @@ TEST(Floors, TheLowestLargeSurfaceFacingUpIsTheFloor) {
   EXPECT_EQ(FindFloor(Plate(5, 5, 0.25, false)), 0.25);  // the wrong way round, and all there is
 }
 
+TEST(Floors, ACeilingIsThatOfTheStorey) {
+  TriangleMesh house = Plate(10, 10, 0, true);
+  Append(house, Plate(10, 10, 2.5, false));
+  Append(house, Plate(10, 10, 2.65, true));
+  Append(house, Plate(10, 10, 5.15, false));
+  EXPECT_NEAR(FindCeiling(house, 0.0).value(), 2.5, 1e-6);
+  EXPECT_NEAR(FindCeiling(house, 2.65).value(), 5.15, 1e-6);
+  Append(house, Plate(10, 10, 5.25, true));
+  EXPECT_NEAR(FindCeiling(house, 2.65).value(), 5.15, 1e-6);
+  // A shelf's top has no ceiling below it.
+  TriangleMesh hall = Plate(10, 10, 0, true);
+  Append(hall, Plate(6, 6, 2, true));
+  Append(hall, Plate(10, 10, 5, false));
+  EXPECT_NEAR(FindCeiling(hall, 0.0).value(), 5.0, 1e-6);
+}
+
 TEST(Floors, UnevenTilesCountTogether) {
   TriangleMesh tiles;
   for (int i = 0; i < 20; ++i) {
