@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <numeric>
 
 #include "eval/cli/command_output.h"
@@ -9,6 +10,7 @@
 #include "eval/experiment/seed_range.h"
 #include "eval/study/ablation.h"
 #include "eval/study/ablation_report.h"
+#include "eval/sweep/sweep_cache.h"
 #include "mapper/core/error.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
@@ -61,6 +63,13 @@ AblationPlan PlanOf(const AblateArguments& arguments) {
   return plan;
 }
 
+void Announce(const std::string& experiment, const AblationPlan& plan) {
+  const std::size_t variants = AblationVariants().size();
+  fmt::print("{}: {}, {} variants x {}\n", experiment, Counted(variants * plan.seeds.size(), "run"),
+             variants, Counted(plan.seeds.size(), "seed"));
+  std::fflush(stdout);
+}
+
 void AblateNamed(const AblateArguments& arguments) {
   const AblationPlan plan = PlanOf(arguments);
   Warn(DoubtsOfSettings(arguments.experiment, arguments.common.set));
@@ -70,8 +79,18 @@ void AblateNamed(const AblateArguments& arguments) {
   RunContext context;
   context.threads = ThreadsOr(arguments.common.threads);
   context.cache_folder = CacheFolder(arguments.common);
-  context.progress = bar.AsProgress();
+  // By default as a sweep's, in its folder: the variants of all seeds see the same room.
+  const bool own_cache = context.cache_folder.empty() && !arguments.common.no_cache;
+  if (own_cache) context.cache_folder = folder.File("cache");
+  // Announced once the first run is on its way, so that refused input is all that is said of it.
+  bool is_announced = arguments.json;
+  context.progress = [&, show = bar.AsProgress()](int done, int total) {
+    if (!is_announced) Announce(arguments.experiment, plan);
+    is_announced = true;
+    show(done, total);
+  };
   const auto [runs, warnings] = RunAblation(plan, context);
+  if (own_cache) RemoveSweepCache(context.cache_folder);
   const std::vector<AblationRun> counted = WithoutRepeatedSeeds(runs);
   const std::size_t seeds = counted.size() / AblationVariants().size();
   const std::vector<ErrorShares> shares = SharesOf(counted);

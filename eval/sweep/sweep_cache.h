@@ -1,4 +1,4 @@
-// The default cache of a sweep, which is in its folder while it runs.
+// The default cache of a sweep or an ablation, which is in its folder while it runs.
 #pragma once
 
 #include <string>

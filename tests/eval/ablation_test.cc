@@ -112,7 +112,9 @@ TEST_F(ProgramAblate, SeedsThatChangeNothingAreOneMeasurement) {
   EXPECT_EQ(outcome.err,
             "depthgrid: warning: 2 of 3 seeds give the same scores as another and do not count: "
             "nothing here depends on the seed\n");
+  EXPECT_THAT(outcome.out, testing::StartsWith("./small.yaml: 21 runs, 7 variants x 3 seeds\n"));
   EXPECT_THAT(outcome.out, HasSubstr("1 seed;"));
+  EXPECT_FALSE(std::filesystem::exists(Path("out/cache")));
   EXPECT_EQ(nlohmann::json::parse(ReadFile(Path("out/ablation.json")))["seeds"], 1);
   const std::string csv = ReadFile(Path("out/ablation.csv"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 3 * 7);  // as they were run
