@@ -230,6 +230,12 @@ std::vector<std::string> DoubtsOf(const EvalMapArguments& arguments, const MapSc
   constexpr double kLeastNearWalls = 0.5;
   constexpr int kFewWallCells = 20;
   std::vector<std::string> doubts;
+  for (const bool is_estimate : {false, true}) {
+    const StateScore& exact = score.all.occupied.front();
+    if ((is_estimate ? exact.estimated_cells : exact.true_cells) > 0) continue;
+    doubts.push_back(fmt::format("{}: has no occupied cell: scores of walls need some in both maps",
+                                 is_estimate ? arguments.estimate : arguments.reference));
+  }
   if (KnownToBoth(score.all) == 0) {
     doubts.push_back(fmt::format(
         "{}: shares no known cell with {}: maps of different places, or in different frames",

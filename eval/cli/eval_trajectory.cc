@@ -68,9 +68,21 @@ void PrintDrift(const TrajectoryScore& score) {
   if (rows.size() > 1) fmt::print("\n{}", Table(rows));
 }
 
+double SpanS(const Trajectory& trajectory) {
+  return trajectory.empty() ? 0.0 : trajectory.back().stamp_s - trajectory.front().stamp_s;
+}
+
+// What few common stamps may come from, when one of the files spans far more time.
+std::string UnitsText(const TrajectoryFiles& files) {
+  const double reference_s = SpanS(files.reference), estimate_s = SpanS(files.estimate);
+  if (!AreOfOtherUnits(reference_s, estimate_s)) return "";
+  return fmt::format("; it spans {:.3g} s and the other {:.3g} s: are both in seconds?", estimate_s,
+                     reference_s);
+}
+
 // Warnings about errors that may be misleading.
 std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vector<PosePair>& pairs,
-                                  const EvalTrajectoryArguments& of) {
+                                  const TrajectoryFiles& files, const EvalTrajectoryArguments& of) {
   constexpr double kPercent = 100.0;
   constexpr double kFewShare = 0.5;  // more missing than present
   constexpr double kMostMissing = 0.2;
@@ -85,11 +97,12 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vecto
         fmt::format("{}: one pose is matched, aligned and relative errors need more", of.estimate));
   } else if (!score.by_row &&
              (score.matched_poses < kFewShare * fewer || score.matched_poses < 2)) {
-    doubts.push_back(fmt::format(
-        "{}: only {} of its {} poses {} a stamp in common with {}'s {}; the errors "
-        "are of those alone",
-        of.estimate, score.matched_poses, score.estimate_poses,
-        score.matched_poses == 1 ? "has" : "have", of.reference, score.reference_poses));
+    doubts.push_back(
+        fmt::format("{}: only {} of its {} poses {} a stamp in common with {}'s {}; the errors "
+                    "are of those alone{}",
+                    of.estimate, score.matched_poses, score.estimate_poses,
+                    score.matched_poses == 1 ? "has" : "have", of.reference, score.reference_poses,
+                    UnitsText(files)));
   } else if (score.time_coverage < 1.0 - kMostMissing) {
     doubts.push_back(fmt::format("{}: covers {:.0f} % of {}'s time; the errors are of that alone",
                                  of.estimate, kPercent * score.time_coverage, of.reference));
@@ -173,8 +186,7 @@ Paired PairByRows(const TrajectoryFiles& files) {
 std::string NoSharedStampText(const TrajectoryFiles& files, double limit_s,
                               const EvalTrajectoryArguments& of) {
   const std::string apart = SpansApart(files.reference, files.estimate, of.reference, limit_s);
-  const auto span_s = [](const Trajectory& t) { return t.back().stamp_s - t.front().stamp_s; };
-  if (AreOfOtherUnits(span_s(files.reference), span_s(files.estimate))) {
+  if (AreOfOtherUnits(SpanS(files.reference), SpanS(files.estimate))) {
     return apart + "; are both in seconds?";
   }
   const auto clock = FindClockOffset(files.reference, files.estimate);
@@ -223,7 +235,7 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   if (files.by_row && arguments.max_difference_s >= 0.0) {
     Warn({"--max-difference: has no effect because rows pair in order"});
   }
-  Warn(DoubtsOf(*score, paired.pairs, arguments));
+  Warn(DoubtsOf(*score, paired.pairs, files, arguments));
   if (!files.by_row) {
     Warn(DoubtsOfClock(files.reference, files.estimate, {arguments.reference, arguments.estimate},
                        arguments.time_offset_s));

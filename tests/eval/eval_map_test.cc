@@ -88,6 +88,14 @@ TEST_F(EvalMap, ThatNothingCouldBeSeenIsSaid) {
             "be seen\n");
 }
 
+TEST_F(EvalMap, AMapWithoutWallsIsSaid) {
+  WriteCells("bare", 0.1, "P2 3 2 255\n254 254 254\n254 254 254\n");
+  const std::string said =
+      "bare.yaml: has no occupied cell: scores of walls need some in both maps\n";
+  EXPECT_EQ(Program("eval map coarse.yaml bare.yaml").err, "depthgrid: warning: " + said);
+  EXPECT_THAT(Program("eval map bare.yaml coarse.yaml").err, HasSubstr(said));
+}
+
 // A room's walls in cells of 0.05 m, 60 x 20, with a wall across.
 std::string RoomPgm() {
   std::string pgm = "P2 60 20 255\n";

@@ -78,6 +78,14 @@ TEST_F(EvalTrajectory, SaysWhenItsErrorsAreOfFewPosesOrInOtherUnits) {
   EXPECT_THAT(
       one.err,
       HasSubstr("one.txt: only 1 of its 3 poses has a stamp in common with truth.txt's 13"));
+  std::string nanoseconds;
+  for (int i = 0; i <= 12; ++i) nanoseconds += fmt::format("{}000000000 {} 0 0 0 0 0 1\n", i, i);
+  Write("ns.txt", nanoseconds);
+  EXPECT_THAT(Program("eval trajectory truth.txt ns.txt").err,
+              HasSubstr("ns.txt: only 1 of its 13 poses has a stamp in common with truth.txt's 13; "
+                        "the errors are of those alone; it spans 1.2e+10 s and the other 12 s: are "
+                        "both in seconds?\n"));
+  EXPECT_THAT(one.err, testing::Not(HasSubstr("are both in seconds?")));
   std::string metres;
   std::string millimetres;
   for (int i = 0; i <= 12; ++i) {
