@@ -2,6 +2,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "eval/sweep/scan_set.h"
 #include "eval/sweep/sweep_engine.h"
@@ -24,6 +25,7 @@ constexpr std::size_t kMostTries = 8;
 // CPU seconds of parts of a run.
 struct PilotTimes {
   std::size_t frames = 0;  // of the whole run
+  double image_s = 0.0;    // per frame, once for all groups that share their images
   double scan_s = 0.0;     // per frame, once for all runs of a group
   double run_s = 0.0;      // mapping and scores of all frames
 };
@@ -54,13 +56,15 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   const double before_s = ProcessCpuS();
   for (std::size_t i = 0; i < pilot; ++i) {
     Frame frame;
+    const double image_before_s = ProcessCpuS();
     frame.depth = std::make_shared<const DepthImage>(sensor.Image(static_cast<int>(i)));
+    times.image_s += (ProcessCpuS() - image_before_s) / static_cast<double>(pilot);
     frame.slam_from_camera = set.slam.live[i].slam_from_camera;
     frame.stamp_s = set.slam.live[i].stamp_s;
     frame.slam_epoch = set.slam.live[i].epoch;
     set.scans[i] = scanner.ScansOf(frame);
   }
-  times.scan_s = (ProcessCpuS() - before_s) / static_cast<double>(pilot);
+  times.scan_s = (ProcessCpuS() - before_s) / static_cast<double>(pilot) - times.image_s;
   const std::size_t few = std::min(pilot, kShortFrames);
   RunS(set, few, *truth);  // warm-up: the first run also pays one-time costs
   const double few_s = RunS(set, few, *truth);
@@ -71,6 +75,23 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
     times.run_s += a_frame_s * static_cast<double>(times.frames - few);
   }
   return times;
+}
+
+// Number of sets of depth images that the runs use: settings of the mapper and of SLAM do not
+// affect them.
+int CountImageSets(const SweepPlan& plan, const std::vector<int>& runs) {
+  std::set<std::vector<std::string>> sets;
+  for (const int run : runs) {
+    std::vector<std::string> seen;
+    for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
+      const std::string& key = plan.parameter_keys[i];
+      const bool is_seen = !key.starts_with("mapper.") && !key.starts_with("slam.") &&
+                           !key.starts_with("metrics.") && key != "slam_seed";
+      if (is_seen) seen.push_back(plan.runs[static_cast<std::size_t>(run)].values[i]);
+    }
+    sets.insert(std::move(seen));
+  }
+  return static_cast<int>(sets.size());
 }
 
 // Of the first run that does not fail; earlier ones report their failures when they are run.
@@ -116,7 +137,8 @@ SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,
   estimate.failure = pilot.failure;
   if (const auto& times = pilot.times) {
     const auto frames = static_cast<double>(times->frames);
-    estimate.cpu_s = estimate.scan_sets * frames * times->scan_s +
+    estimate.cpu_s = CountImageSets(plan, runs) * frames * times->image_s +
+                     estimate.scan_sets * frames * times->scan_s +
                      static_cast<double>(runs.size()) * times->run_s;
   }
   return estimate;
