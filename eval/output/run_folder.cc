@@ -64,6 +64,12 @@ std::string Lines(const std::vector<std::string>& lines) {
   return text;
 }
 
+// For the heading of the page, as the scene may be gone when that is written again.
+struct SceneRecord {
+  std::string name;
+  void Visit(OptionsVisitor& v) { v.Text("scene_name", name, "the scene's name"); }
+};
+
 }  // namespace
 
 std::string MetricsOf(const RunScores& scores) {
@@ -90,6 +96,7 @@ std::string Provenance(const World* world) {
   std::string yaml = "provenance:\n";
   yaml += fmt::format("  version: {}\n  build: {}\n", DEPTHGRID_VERSION, BuildId());
   if (world != nullptr) {
+    yaml += "  " + ToYaml(SceneRecord{world->scene.name});
     yaml += fmt::format("  scene_hash: {}\n  trajectory_hash: {}\n", world->hashes.scene,
                         world->hashes.trajectory);
   }

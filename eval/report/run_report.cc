@@ -190,6 +190,8 @@ Json SamplesJson(const std::string& folder) {
 }
 
 std::string TitleOf(const Config& settings) {
+  const std::string scene_name = SettingOf(settings, "provenance.scene_name");
+  if (!scene_name.empty()) return scene_name;
   for (const char* key : {"scene", "input"}) {
     const std::string value = SettingOf(settings, key);
     if (value.empty()) continue;

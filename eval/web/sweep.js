@@ -31,7 +31,7 @@ function headline() {
   } else if (line) {
     cards.push(card(axis.labels[POINTS[line.points[line.best]].values[along.axis]], `best ${shortKey(axis.key)}${held === "all" ? "" : ` at ${held}`}${hasUnlikeSeeds(line) ? `, over the ${line.seeds} seeds that all its points have` : ""}`));
     if (line.seeds > 1) cards.push(card(line.low === line.high ? compact(line.low) : `${compact(line.low)} – ${compact(line.high)}`, `95 % interval of the best ${shortKey(axis.key)}`));
-    if (line.seeds > 1) cards.push(card(rough(line.regret_of_seed[line.best] * metric.factor), `regret: its mean loss against ${oracleOf(line)}`));
+    if (line.seeds > 1) cards.push(card(rough(metric.shown(line.regret_of_seed[line.best])), `regret: its mean loss against ${oracleOf(line)}`));
   }
   byId("headline").replaceChildren(...cards);
   byId("direction").textContent = aimText();

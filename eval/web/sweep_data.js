@@ -19,8 +19,10 @@ const EACH = SWEEP.crossed_seeds ? "run" : "seed";
 const METRICS = SWEEP.metrics.map((metric) => {
   const suited = suitedUnit(metric.score, metric.mean);
   const label = metric.name.replace(metric.score, () => suited.label);  // a distance keeps its bars
-  const scale = (values) => values.map((v) => (v === null ? null : v * suited.factor));
-  return { ...metric, ...suited, label, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
+  // What rounding leaves of nothing, such as 4e-16 m of true poses, is shown as 0.
+  const shown = (v) => (Math.abs(v) < 1e-12 ? 0 : v * suited.factor);
+  const scale = (values) => values.map((v) => (v === null ? null : shown(v)));
+  return { ...metric, ...suited, label, shown, mean: scale(metric.mean), median: scale(metric.median), low: scale(metric.low), high: scale(metric.high) };
 }).sort((a, b) => (a.main || Infinity) - (b.main || Infinity) || a.score.localeCompare(b.score) || a.name.length - b.name.length);
 let metric = METRICS[0];
 const withUnit = (value, m = metric) => (isNumber(value) ? `${compact(value)}${m.unit ? ` ${m.unit}` : ""}` : "–");

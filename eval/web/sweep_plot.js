@@ -115,9 +115,19 @@ function whyMissing(points) {
   return some === 0 ? " (no run failed: the score has no value there)" : some === points.length ? " (see Failed runs)" : " (see Failed runs; elsewhere the score has no value)";
 }
 
+// Why nothing is compared along an axis; empty if it is, or if there is nothing to choose.
+function whyNoLines(axis) {
+  if (axis.texts.length < 2) return "";
+  if (!axis.numeric) return `No best value: those of ${axis.key} are no numbers; the means above compare them.`;
+  if (!metric.lines) return `No best value of ${metric.label}: only the main scores, first in the list, have one.`;
+  if (metric.better === "neither") return `No best value of ${metric.label}: ${aimText()}.`;
+  return `No best value: no two points differ in ${axis.key} alone.`;
+}
+
 // Which values are excluded from it, or why there is none.
 function missingText(axis) {
   const all = allLinesAlong(along.axis);
+  if (!all.length) return whyNoLines(axis);
   const why = (lines) => whyMissing(lines.flatMap((line) => line.left_out));
   const labels = (points) => points.map((i) => axis.labels[POINTS[i].values[along.axis]]).join(", ");
   const where = (line) => (heldText(line) === "all" ? "" : ` (${heldText(line)})`);
@@ -174,7 +184,7 @@ function drawBest() {
       percent(line.share_best[line.best]),
       `${mean} (${compact(metric.low[line.points[line.best]])} to ${compact(metric.high[line.points[line.best]])})`,
       !canTell(line, line.seeds) ? "too few seeds to tell" : asGood.length > 6 ? `${asGood.length} of ${line.points.length}` : asGood.join(", "),
-      compact(rounded(line.regret_of_seed[line.best] * metric.factor, 3)), String(line.seeds)];
+      compact(rounded(metric.shown(line.regret_of_seed[line.best]), 3)), String(line.seeds)];
   });
   const inUnit = metric.unit ? `, ${metric.unit}` : "";
   const table = tableOf(["held", `best ${shortKey(axis.key)}`, "95 % interval", "best in resamples", `mean there${inUnit} (95\u00a0%)`, "as good", `regret${inUnit}`, "seeds"], rows);
@@ -190,9 +200,9 @@ function drawBest() {
   const regretAt = (line, value) => line.regret_of_seed[line.points.findIndex((i) => place(i) === value)] ?? null;
   const some = shown.length <= MOST_LINES ? shown : [...Array(MOST_LINES).keys()].map((k) => shown[Math.round(k * (shown.length - 1) / (MOST_LINES - 1))]);
   drawPlot(byId("regret"), {
-    title: `Regret along ${axis.key}: mean loss against ${oraclesOf(some)}${some.length < shown.length ? ` (${some.length} of the ${shown.length} rows above)` : ""}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
+    title: `Regret along ${axis.key}: mean loss against ${oraclesOf(some)}${some.length < shown.length ? ` (${some.length} of the ${shown.length} rows above, as more lines would hide each other)` : ""}`, caption: `${metric.label}${SWEEP.of ? `; ${SWEEP.of}` : ""}`, x, xLabel: axis.key, yLabel: metric.unit || "value", height: 220,
     logX: along.logX && axis.numbers.every((v) => v > 0),
-    series: some.map((line, k) => ({ label: heldText(line), values: places.map((value) => regretAt(line, value)).map((v) => (v === null ? null : v * metric.factor)), colour: PALETTE[k], unit: metric.unit, points: true, spanGaps: true,
+    series: some.map((line, k) => ({ label: heldText(line), values: places.map((value) => regretAt(line, value)).map((v) => (v === null ? null : metric.shown(v))), colour: PALETTE[k], unit: metric.unit, points: true, spanGaps: true,
       width: 1.6 + 0.9 * (some.length - 1 - k) })),  // those beneath show on both sides where many lie at 0
   });
 }

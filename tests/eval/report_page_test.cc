@@ -20,6 +20,7 @@ TEST_F(ReportPage, OfARun) {
 
   EXPECT_EQ(browser_->Evaluate("document.getElementById('changed').textContent"),
             "Not the default: sensor.width 80, sensor.height 60");
+  EXPECT_EQ(browser_->Evaluate("document.querySelector('h1').textContent"), "test_room");
 
   // Ten worst frames, with the surface of those that were matched: all but the first.
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('.worst-card').length"), 10);
@@ -83,6 +84,18 @@ TEST_F(ReportPage, OfARun) {
 }
 
 // Such as another one that regrid drew.
+// Also when the scene's file is gone.
+TEST_F(ReportPage, IsHeadedByTheNameOfTheScene) {
+  std::string scene = ReadFile(Path("room.yaml"));
+  scene.replace(scene.find("test_room"), 9, "'My room: <1>'");
+  Write("named.yaml", scene);
+  Succeed("run ./small.yaml --set scene=./named.yaml -o named");
+  std::filesystem::remove(Path("named.yaml"));
+  Succeed("report named");
+  EXPECT_THAT(ReadFile(Path("named/report.html")),
+              ::testing::HasSubstr("<h1>My room: &lt;1></h1>"));
+}
+
 TEST_F(ReportPage, OfAMapThatIsAnotherByNowIsRefused) {
   Succeed("run ./small.yaml --set frames=3 -o made");
   const std::string map = ReadFile(Path("made/map.yaml"));

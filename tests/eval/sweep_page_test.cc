@@ -325,6 +325,11 @@ TEST_F(SweepPage, OfASweepWhoseFirstValueFails) {
       browser_->Evaluate(missing),
       too_few + "none (drift_scale 1, max_range_m 0.3), none (drift_scale 2, max_range_m 0.3).");
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#best tbody tr').length"), 2);
+  EXPECT_EQ(browser_->Evaluate("whyNoLines({key: 'scene', texts: ['a', 'b'], numeric: false})"),
+            "No best value: those of scene are no numbers; the means above compare them.");
+  EXPECT_EQ(browser_->Evaluate("whyNoLines({key: 'frames', texts: ['5'], numeric: true})"), "");
+  EXPECT_EQ(browser_->Evaluate("[4e-16, -4e-16, 0.25].map((v) => METRICS[0].shown(v) === 0)"),
+            nlohmann::json({true, true, false}));
   browser_->Evaluate("along.axis = 2; drawAlong()");
   EXPECT_THAT(browser_->Evaluate(missing),
               ::testing::StartsWith(too_few + "only 6 (gain 0, drift_scale 1), only 6"));
