@@ -159,8 +159,7 @@ void AddSweep(Program& program) {
       ->type_name("I/N");
   app->add_option("--merge", arguments->merge, "Join the parts in these folders into one table")
       ->type_name("DIR");
-  app->add_option("--reuse", arguments->reuse,
-                  "Take runs of the same values from this sweep; repeat for more")
+  app->add_option("--reuse", arguments->reuse, "Take runs of the same values from it (repeatable)")
       ->type_name("OLD")
       ->allow_extra_args(false);
   app->add_option("--executor", arguments->executor, "Where runs are done")

@@ -219,20 +219,13 @@ SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& 
 
 // What `do_runs` returns, with rendered depth and scans kept in `cache`. When the disk is full, a
 // cache that is the sweep's `own` makes room for the results: it is removed, and the other runs are
-// done without. One that the user chose may be of use to other sweeps and stays.
+// done without.
 SweepResults WithCache(const std::string& cache, bool own,
                        const std::function<SweepResults(const std::string& cache)>& do_runs) {
   try {
     return do_runs(cache);
   } catch (const DiskFullError& error) {
-    if (cache.empty() || InterruptExitCode()) throw;
-    if (!own) {
-      throw DiskFullError(
-          fmt::format("{}; if its cache {} takes the room, remove that or choose "
-                      "another with --cache DIR, or --no-cache",
-                      error.what(), cache));
-    }
-    if (!fs::exists(cache)) throw;
+    if (!own || !fs::exists(cache) || InterruptExitCode()) throw;
     Warn({fmt::format("{}; {} is removed, and the sweep goes on without it", error.what(), cache)});
     RemoveSweepCache(cache);
     return do_runs("");
@@ -250,8 +243,8 @@ void SweepIn(const std::string& output, const SweepArguments& arguments, const S
     context.cache_folder = cache;
     return DoUnfinishedRuns(arguments, plan, earlier, context);
   });
+  if (own_cache) RemoveSweepCache(output + "/cache");  // first: it may fill the disk
   ProgressFile(output).NoteNow({results.planned_runs, results.planned_runs});
-  if (own_cache) RemoveSweepCache(output + "/cache");
   Summarise(results);
 }
 
@@ -265,6 +258,13 @@ void SweepHere(const SweepArguments& arguments, const SweepPlan& plan,
   context.cache_folder = CacheFolder(arguments.common);
   try {
     SweepIn(output, arguments, plan, earlier, context);
+  } catch (const DiskFullError& error) {
+    if (context.cache_folder.empty()) throw;
+    // Other sweeps may use it.
+    throw DiskFullError(
+        fmt::format("{}; if its cache {} takes the room, remove that or choose "
+                    "another with --cache DIR, or --no-cache",
+                    error.what(), context.cache_folder));
   } catch (const std::exception&) {
     // If the folder was removed meanwhile, errors are not the user's mistake.
     if (folder.IsThere()) throw;
