@@ -2,59 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <functional>
-
-#include "mapper/core/rng.h"
 #include "mapper/io/camera_formats.h"
-#include "tests/mapper/analytic_room.h"
+#include "tests/io/posed_pairs.h"
 
 namespace depthgrid {
 namespace {
-
-using PoseChange = std::function<Pose3(const Pose3&)>;
-
-constexpr double kFrameS = 0.1;
-constexpr int kFrames = 120;
-constexpr int kFramesAround = 50;  // poses without images
-const PinholeCamera kCamera{80, 60, 60.2, 60.0, 39.5, 29.5, {}};
-
-Pose3 TruePose(double time_s) {
-  const double yaw_rad = 0.4 * time_s + 0.5 * std::sin(1.1 * time_s);
-  return TiltedCamera({0.8 * std::cos(0.5 * time_s), 0.6 * std::sin(0.7 * time_s), yaw_rad}, 1.2,
-                      0.3 + 0.1 * std::sin(0.9 * time_s), 0.1 * std::cos(1.3 * time_s));
-}
-
-using PoseAt = Pose3 (*)(double time_s);
-
-// Half a second apart, `noise` of the depth.
-std::vector<ImagePair> Pairs(double noise, PoseAt pose_at = TruePose) {
-  AnalyticRoom room;
-  room.boxes = {{{1.2, -1.0, 0.0}, {2.4, 0.6, 0.75}}, {{-2.6, 0.8, 0.0}, {-1.4, 2.2, 1.1}}};
-  RandomStream random(4, RandomStage::kTest);
-  const auto image_at = [&](double time_s) {
-    auto image = std::make_shared<DepthImage>(room.Render(kCamera, pose_at(time_s)));
-    for (float& z_m : image->z_m) z_m *= static_cast<float>(1.0 + noise * random.Normal());
-    return image;
-  };
-  std::vector<ImagePair> pairs;
-  for (int i = 20; i < 100; i += 5) {
-    const double first_s = i * kFrameS, second_s = first_s + 0.5;
-    pairs.push_back({first_s, second_s, image_at(first_s), image_at(second_s)});
-  }
-  return pairs;
-}
-
-// What a file says whose poses are `written` and whose clock is ahead by `ahead_s`.
-std::vector<SlamPose> Given(const PoseChange& written, double ahead_s = 0.0,
-                            PoseAt pose_at = TruePose) {
-  std::vector<SlamPose> live;
-  for (int i = -kFramesAround; i < kFrames + kFramesAround; ++i) {
-    live.push_back({i * kFrameS, written(pose_at(i * kFrameS - ahead_s)), 0});
-  }
-  return live;
-}
-
-Pose3 AsItIs(const Pose3& pose) { return pose; }
 
 Pose3 Inverted(const Pose3& pose) { return Inverse(pose); }
 
@@ -65,7 +17,7 @@ Pose3 WFirst(const Pose3& pose) {
 
 TEST(PoseCheck, RightPosesAreNotDoubted) {
   for (const double noise : {0.0, 0.01, 0.03}) {
-    EXPECT_FALSE(DoubtOfPoses(Pairs(noise), kCamera, Given(AsItIs), {})) << noise;
+    EXPECT_FALSE(DoubtOfPoses(PosedPairs(noise), kPairsCamera, GivenPoses(AsItIs), {})) << noise;
   }
 }
 
@@ -81,12 +33,12 @@ TEST(PoseCheck, ErrorsInHeightOfALowCameraAreNoOtherScale) {
     given.translation.z() += 0.01 * std::sin(400.0 * pose.translation.x());
     return given;
   };
-  const std::vector<ImagePair> pairs = Pairs(0.005, drives);
-  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(jumps, 0.0, drives), {}));
+  const std::vector<ImagePair> pairs = PosedPairs(0.005, drives);
+  EXPECT_FALSE(DoubtOfPoses(pairs, kPairsCamera, GivenPoses(jumps, 0.0, drives), {}));
   const auto tenfold = [](const Pose3& pose) {
     return Pose3{pose.rotation, 10.0 * pose.translation};
   };
-  const auto doubt = DoubtOfPoses(pairs, kCamera, Given(tenfold, 0.0, drives), {});
+  const auto doubt = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(tenfold, 0.0, drives), {});
   ASSERT_TRUE(doubt);
   EXPECT_EQ(doubt->reading, PoseReading::kScaled);
   EXPECT_NEAR(doubt->scale, 0.1, 0.01);
@@ -107,10 +59,10 @@ TEST(PoseCheck, NamesHowPosesAreMeant) {
       {PoseReading::kInverse, Inverted},
       {PoseReading::kAxes, body},
       {PoseReading::kAxes, gl}};
-  const std::vector<ImagePair> pairs = Pairs(0.01);
+  const std::vector<ImagePair> pairs = PosedPairs(0.01);
   int cases = 0;
   for (const auto& [reading, written] : readings) {
-    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(written), {});
+    const auto doubt = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(written), {});
     ASSERT_TRUE(doubt) << cases;
     EXPECT_EQ(doubt->reading, reading) << cases;
     EXPECT_EQ(doubt->time_offset_s, 0.0);
@@ -122,15 +74,15 @@ TEST(PoseCheck, NamesHowPosesAreMeant) {
 
 // Stands, turns, and stands; all pairs lie where it turns, with time to spare on either side.
 Pose3 TurningOn(double time_s) {
-  const double first_s = 20 * kFrameS - 0.1, last_s = 95 * kFrameS + 0.5 + 0.3;
+  const double first_s = 20 * kPairsFrameS - 0.1, last_s = 95 * kPairsFrameS + 0.5 + 0.3;
   const double went_s = std::clamp(time_s, first_s, last_s) - first_s;
   return TiltedCamera({0.5, 0.3, 0.4 * went_s}, 1.0, 0.2, 0.0);
 }
 
 TEST(PoseCheck, SaysHowUnsureAClockIsThatNothingTells) {
   constexpr double kAheadS = -1.9;
-  const auto doubt =
-      DoubtOfPoses(Pairs(0.0, TurningOn), kCamera, Given(AsItIs, kAheadS, TurningOn), {});
+  const auto doubt = DoubtOfPoses(PosedPairs(0.0, TurningOn), kPairsCamera,
+                                  GivenPoses(AsItIs, kAheadS, TurningOn), {});
   ASSERT_TRUE(doubt);
   EXPECT_EQ(doubt->reading, PoseReading::kShifted);
   EXPECT_NEAR(doubt->time_unsure_s, 0.2, 0.05);
@@ -138,36 +90,36 @@ TEST(PoseCheck, SaysHowUnsureAClockIsThatNothingTells) {
 }
 
 TEST(PoseCheck, NamesAnotherClock) {
-  const std::vector<ImagePair> pairs = Pairs(0.01);
+  const std::vector<ImagePair> pairs = PosedPairs(0.01);
   for (const double ahead_s : {-1.5, -0.5, 0.25, 0.5, 1.5}) {
-    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(AsItIs, ahead_s), {});
+    const auto doubt = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(AsItIs, ahead_s), {});
     ASSERT_TRUE(doubt) << ahead_s;
     EXPECT_EQ(doubt->reading, PoseReading::kShifted);
     EXPECT_NEAR(doubt->time_offset_s, ahead_s, 0.03);
     EXPECT_LT(doubt->time_unsure_s, 0.05);
     RecordingOptions mended;
     mended.time_offset_s = doubt->time_offset_s;
-    EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(AsItIs, ahead_s), mended)) << ahead_s;
+    EXPECT_FALSE(DoubtOfPoses(pairs, kPairsCamera, GivenPoses(AsItIs, ahead_s), mended)) << ahead_s;
   }
 }
 
 // The order of numbers is that of the file, whatever the poses were turned to since.
 TEST(PoseCheck, ReadsYUpPosesAsTheyWereWritten) {
   const auto flip = [](const Pose3& pose) { return FlipY(pose); };
-  const auto given = Given([&](const Pose3& pose) { return flip(WFirst(flip(pose))); });
-  const auto doubt = DoubtOfPoses(Pairs(0.01), kCamera, given, {}, true);
+  const auto given = GivenPoses([&](const Pose3& pose) { return flip(WFirst(flip(pose))); });
+  const auto doubt = DoubtOfPoses(PosedPairs(0.01), kPairsCamera, given, {}, true);
   ASSERT_TRUE(doubt);
   EXPECT_EQ(doubt->reading, PoseReading::kWFirst);
 }
 
 // Not another clock, though the images fit better at a time at which the camera moved less.
 TEST(PoseCheck, NamesAnotherScale) {
-  const std::vector<ImagePair> pairs = Pairs(0.01);
+  const std::vector<ImagePair> pairs = PosedPairs(0.01);
   for (const double scale : {0.2, 5.0, 1000.0}) {
     const auto scaled = [&](const Pose3& pose) {
       return Pose3{pose.rotation, scale * pose.translation};
     };
-    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(scaled), {});
+    const auto doubt = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(scaled), {});
     ASSERT_TRUE(doubt) << scale;
     EXPECT_EQ(doubt->reading, PoseReading::kScaled);
     EXPECT_NEAR(doubt->scale * scale, 1.0, 0.05);
@@ -175,19 +127,19 @@ TEST(PoseCheck, NamesAnotherScale) {
 }
 
 TEST(PoseCheck, NamesAnotherCamera) {
-  const std::vector<ImagePair> pairs = Pairs(0.002);
+  const std::vector<ImagePair> pairs = PosedPairs(0.002);
   for (const double factor : {0.5, 0.8, 1.3}) {
-    PinholeCamera focal = kCamera;
+    PinholeCamera focal = kPairsCamera;
     focal.fx_px *= factor;
     focal.fy_px *= factor;
     PinholeCamera size = focal;
-    size.cx_px = factor * (kCamera.cx_px + 0.5) - 0.5;
-    size.cy_px = factor * (kCamera.cy_px + 0.5) - 0.5;
-    const auto wrong_focal = DoubtOfPoses(pairs, focal, Given(AsItIs), {});
+    size.cx_px = factor * (kPairsCamera.cx_px + 0.5) - 0.5;
+    size.cy_px = factor * (kPairsCamera.cy_px + 0.5) - 0.5;
+    const auto wrong_focal = DoubtOfPoses(pairs, focal, GivenPoses(AsItIs), {});
     ASSERT_TRUE(wrong_focal) << factor;
     EXPECT_EQ(wrong_focal->reading, PoseReading::kFocal) << factor;
     EXPECT_NEAR(wrong_focal->scale * factor, 1.0, 0.03) << factor;
-    const auto wrong_size = DoubtOfPoses(pairs, size, Given(AsItIs), {});
+    const auto wrong_size = DoubtOfPoses(pairs, size, GivenPoses(AsItIs), {});
     ASSERT_TRUE(wrong_size) << factor;
     EXPECT_EQ(wrong_size->reading, PoseReading::kImageSize) << factor;
     EXPECT_NEAR(wrong_size->scale * factor, 1.0, 0.03) << factor;
@@ -196,72 +148,23 @@ TEST(PoseCheck, NamesAnotherCamera) {
 
 // Of images that were cut, with the camera's file as it was.
 TEST(PoseCheck, NamesAnotherCentre) {
-  const std::vector<ImagePair> pairs = Pairs(0.0);
+  const std::vector<ImagePair> pairs = PosedPairs(0.0);
   for (const auto& [right_px, down_px] : {std::pair(0.15, 0.0), {-0.1, 0.08}, {0.0, -0.12}}) {
-    const Eigen::Vector2d off_px = kCamera.width_px * Eigen::Vector2d(right_px, down_px);
-    PinholeCamera camera = kCamera;
+    const Eigen::Vector2d off_px = kPairsCamera.width_px * Eigen::Vector2d(right_px, down_px);
+    PinholeCamera camera = kPairsCamera;
     camera.cx_px += off_px.x();
     camera.cy_px += off_px.y();
-    const auto doubt = DoubtOfPoses(pairs, camera, Given(AsItIs), {});
+    const auto doubt = DoubtOfPoses(pairs, camera, GivenPoses(AsItIs), {});
     ASSERT_TRUE(doubt) << off_px;
     EXPECT_EQ(doubt->reading, PoseReading::kCentre) << off_px;
-    EXPECT_NEAR(doubt->centre_px.x(), kCamera.cx_px, 0.02 * kCamera.width_px);
-    EXPECT_NEAR(doubt->centre_px.y(), kCamera.cy_px, 0.02 * kCamera.width_px);
-  }
-}
-
-TEST(PoseCheck, NamesASlightlyWrongCamera) {
-  const std::vector<ImagePair> pairs = Pairs(0.002);
-  for (const double factor : {0.94, 0.97, 1.03, 1.06}) {
-    PinholeCamera focal = kCamera;
-    focal.fx_px *= factor;
-    focal.fy_px *= factor;
-    const auto doubt = DoubtOfPoses(pairs, focal, Given(AsItIs), {});
-    ASSERT_TRUE(doubt) << factor;
-    EXPECT_EQ(doubt->reading, PoseReading::kFocal) << factor;
-    EXPECT_NEAR(doubt->scale * factor, 1.0, 0.01) << factor;
-    EXPECT_GT(doubt->sigma, 0.0);
-    EXPECT_LT(doubt->sigma, 0.01);
-  }
-}
-
-TEST(PoseCheck, NamesSlightlyWrongDepthAndStamps) {
-  const std::vector<ImagePair> pairs = Pairs(0.002);
-  const auto scaled = [](const Pose3& pose) {
-    return Pose3{pose.rotation, 1.05 * pose.translation};
-  };
-  const auto scale = DoubtOfPoses(pairs, kCamera, Given(scaled), {});
-  ASSERT_TRUE(scale);
-  EXPECT_EQ(scale->reading, PoseReading::kScaled);
-  EXPECT_NEAR(scale->scale * 1.05, 1.0, 0.01);
-  RecordingOptions options;
-  options.time_offset_s = 1.0;
-  const auto shifted = DoubtOfPoses(pairs, kCamera, Given(AsItIs, 1.1), options);
-  ASSERT_TRUE(shifted);
-  EXPECT_EQ(shifted->reading, PoseReading::kShifted);
-  EXPECT_NEAR(shifted->time_offset_s, 1.1, 0.02);
-}
-
-// SLAM's own errors over a few seconds look like a wrong focal length, but leave a large misfit.
-TEST(PoseCheck, WhereSlamErrsMuchNothingSlightIsNamed) {
-  const std::vector<ImagePair> pairs = Pairs(0.002);
-  const auto errs = [](const Pose3& pose) {
-    Pose3 given = pose;
-    given.translation += 0.03 * Eigen::Vector3d(std::sin(9.0 * pose.translation.x()),
-                                                std::sin(7.0 * pose.translation.y()), 0.0);
-    return given;
-  };
-  for (const double factor : {0.97, 1.0, 1.03}) {
-    PinholeCamera focal = kCamera;
-    focal.fx_px *= factor;
-    focal.fy_px *= factor;
-    EXPECT_FALSE(DoubtOfPoses(pairs, focal, Given(errs), {})) << factor;
+    EXPECT_NEAR(doubt->centre_px.x(), kPairsCamera.cx_px, 0.02 * kPairsCamera.width_px);
+    EXPECT_NEAR(doubt->centre_px.y(), kPairsCamera.cy_px, 0.02 * kPairsCamera.width_px);
   }
 }
 
 // Of a robot's axes, and of a camera's that were not tilted with it.
 TEST(PoseCheck, NamesAMountingAngle) {
-  const std::vector<ImagePair> pairs = Pairs(0.002);
+  const std::vector<ImagePair> pairs = PosedPairs(0.002);
   for (const double down_deg : {-20.0, 15.0, 30.0}) {
     const Eigen::Quaterniond level_from_camera(
         Eigen::AngleAxisd(-RadFromDeg(down_deg), Eigen::Vector3d::UnitX()));
@@ -272,11 +175,11 @@ TEST(PoseCheck, NamesAMountingAngle) {
       const Eigen::Quaterniond camera_from_body = CameraOf(Pose2{}, 0.0).rotation.inverse();
       return Pose3{level(pose).rotation * camera_from_body, pose.translation};
     };
-    const auto of_level = DoubtOfPoses(pairs, kCamera, Given(level), {});
+    const auto of_level = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(level), {});
     ASSERT_TRUE(of_level) << down_deg;
     EXPECT_EQ(of_level->reading, PoseReading::kPitched) << down_deg;
     EXPECT_NEAR(DegFromRad(of_level->down_rad), down_deg, 2.0);
-    const auto of_body = DoubtOfPoses(pairs, kCamera, Given(body), {});
+    const auto of_body = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(body), {});
     ASSERT_TRUE(of_body) << down_deg;
     EXPECT_EQ(of_body->reading, PoseReading::kPitchedBodyAxes) << down_deg;
     EXPECT_NEAR(DegFromRad(of_body->down_rad), down_deg, 2.0);
@@ -284,11 +187,11 @@ TEST(PoseCheck, NamesAMountingAngle) {
 }
 
 TEST(PoseCheck, SaysNothingWhereTooLittleIsKnown) {
-  std::vector<ImagePair> pairs = Pairs(0.0);
-  EXPECT_FALSE(DoubtOfPoses({}, kCamera, Given(Inverted), {}));
-  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, {}, {}));
+  std::vector<ImagePair> pairs = PosedPairs(0.0);
+  EXPECT_FALSE(DoubtOfPoses({}, kPairsCamera, GivenPoses(Inverted), {}));
+  EXPECT_FALSE(DoubtOfPoses(pairs, kPairsCamera, {}, {}));
   pairs.resize(5);
-  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(Inverted), {}));
+  EXPECT_FALSE(DoubtOfPoses(pairs, kPairsCamera, GivenPoses(Inverted), {}));
 }
 
 // Positions of one axis order and rotations of another; a left-handed world.
@@ -310,10 +213,10 @@ TEST(PoseCheck, NamesOtherAxes) {
   swap_xy << 0, 1, 0, 1, 0, 0, 0, 0, 1;
   const Eigen::Matrix3d negate_xy = Eigen::Vector3d(-1.0, -1.0, 1.0).asDiagonal();
   const Eigen::Matrix3d mirror_x = Eigen::Vector3d(-1.0, 1.0, 1.0).asDiagonal();
-  const std::vector<ImagePair> pairs = Pairs(0.01);
+  const std::vector<ImagePair> pairs = PosedPairs(0.01);
   const auto expect = [&](const PoseChange& written, PoseReading reading,
                           const Eigen::Matrix3d& axes) {
-    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(written), {});
+    const auto doubt = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(written), {});
     ASSERT_TRUE(doubt);
     EXPECT_EQ(doubt->reading, reading);
     EXPECT_EQ(doubt->axes, axes);
@@ -327,23 +230,23 @@ TEST(PoseCheck, NamesOtherAxes) {
 // A camera with negative fy asks for poses of a y that points up, one with positive fy for others.
 TEST(PoseCheck, NamesTheOtherSignOfFy) {
   const auto flip = [](const Pose3& pose) { return FlipY(pose); };
-  const std::vector<ImagePair> pairs = Pairs(0.002);
-  const auto of_y_down = DoubtOfPoses(pairs, kCamera, Given(flip), {}, true);
+  const std::vector<ImagePair> pairs = PosedPairs(0.002);
+  const auto of_y_down = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(flip), {}, true);
   ASSERT_TRUE(of_y_down);
   EXPECT_EQ(of_y_down->reading, PoseReading::kYDown);
-  const auto of_y_up = DoubtOfPoses(pairs, kCamera, Given(flip), {});
+  const auto of_y_up = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(flip), {});
   ASSERT_TRUE(of_y_up);
   EXPECT_EQ(of_y_up->reading, PoseReading::kYUp);
-  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(AsItIs), {}, true));
+  EXPECT_FALSE(DoubtOfPoses(pairs, kPairsCamera, GivenPoses(AsItIs), {}, true));
 }
 
 TEST(PoseCheck, NamesRayLengths) {
-  std::vector<ImagePair> pairs = Pairs(0.002);
+  std::vector<ImagePair> pairs = PosedPairs(0.002);
   const auto as_rays = [](const DepthImage& image) {
     auto rays = std::make_shared<DepthImage>(image);
     for (int v = 0; v < image.height_px; ++v) {
       for (int u = 0; u < image.width_px; ++u) {
-        rays->Row(v)[u] *= static_cast<float>(Unproject(kCamera, u, v, 1.0).norm());
+        rays->Row(v)[u] *= static_cast<float>(Unproject(kPairsCamera, u, v, 1.0).norm());
       }
     }
     return rays;
@@ -352,15 +255,15 @@ TEST(PoseCheck, NamesRayLengths) {
     pair.first = as_rays(*pair.first);
     pair.second = as_rays(*pair.second);
   }
-  const auto doubt = DoubtOfPoses(pairs, kCamera, Given(AsItIs), {});
+  const auto doubt = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(AsItIs), {});
   ASSERT_TRUE(doubt);
   EXPECT_EQ(doubt->reading, PoseReading::kRayLengths);
 }
 
 TEST(PoseCheck, SaysOfPosesThatFitInNoReading) {
-  std::vector<ImagePair> pairs = Pairs(0.0);
+  std::vector<ImagePair> pairs = PosedPairs(0.0);
   const auto reading = [&](const PoseChange& written) {
-    const auto doubt = DoubtOfPoses(pairs, kCamera, Given(written), {});
+    const auto doubt = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(written), {});
     EXPECT_TRUE(doubt);
     return doubt ? doubt->reading : PoseReading::kWFirst;
   };
@@ -374,12 +277,12 @@ TEST(PoseCheck, SaysOfPosesThatFitInNoReading) {
     std::swap(pairs[i].first, pairs[pairs.size() - 1 - i].second);
   }
   EXPECT_EQ(reading(AsItIs), PoseReading::kNone);
-  EXPECT_FALSE(DoubtOfPoses(pairs, kCamera, Given(AsItIs), {})->kept);
+  EXPECT_FALSE(DoubtOfPoses(pairs, kPairsCamera, GivenPoses(AsItIs), {})->kept);
 }
 
 // In the columns from 16 to 63 of 80, .8 m away.
 std::vector<ImagePair> PairsBehindSomebody(bool in_order) {
-  std::vector<ImagePair> pairs = Pairs(0.005);
+  std::vector<ImagePair> pairs = PosedPairs(0.005);
   if (!in_order) {
     for (std::size_t i = 0; i < pairs.size() / 2; ++i) {
       std::swap(pairs[i].first, pairs[pairs.size() - 1 - i].second);
@@ -398,11 +301,11 @@ std::vector<ImagePair> PairsBehindSomebody(bool in_order) {
 }
 
 TEST(PoseCheck, SomebodyWhoKeepsAheadIsNoReasonToDoubtRightPoses) {
-  EXPECT_FALSE(DoubtOfPoses(PairsBehindSomebody(true), kCamera, Given(AsItIs), {}));
+  EXPECT_FALSE(DoubtOfPoses(PairsBehindSomebody(true), kPairsCamera, GivenPoses(AsItIs), {}));
 }
 
 TEST(PoseCheck, BehindSomebodyWrongPosesAreDoubtedAndTheirPlaceIsTold) {
-  const auto doubt = DoubtOfPoses(PairsBehindSomebody(false), kCamera, Given(AsItIs), {});
+  const auto doubt = DoubtOfPoses(PairsBehindSomebody(false), kPairsCamera, GivenPoses(AsItIs), {});
   ASSERT_TRUE(doubt);
   EXPECT_EQ(doubt->reading, PoseReading::kNone);
   ASSERT_TRUE(doubt->kept);
@@ -417,7 +320,8 @@ TEST(PoseCheck, ACameraThatTurnsTooFastToTellIsNotDoubted) {
   const auto whirling = [](double time_s) {
     return TiltedCamera({0.5, 0.3, kPi * time_s}, 1.0, 0.2, 0.0);
   };
-  EXPECT_FALSE(DoubtOfPoses(Pairs(0.0, whirling), kCamera, Given(AsItIs, 0.0, whirling), {}));
+  EXPECT_FALSE(
+      DoubtOfPoses(PosedPairs(0.0, whirling), kPairsCamera, GivenPoses(AsItIs, 0.0, whirling), {}));
 }
 
 }  // namespace
