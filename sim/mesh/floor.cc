@@ -112,8 +112,9 @@ double NextFloorM(const TriangleMesh& mesh, double lowest_m) {
   std::vector<LevelPatch> patches = LevelPatches(mesh, Facing::kUp);
   std::erase_if(patches, [&](const LevelPatch& patch) { return patch.z_m < lowest_m; });
   const std::vector<double> slabs_m2 = SlabAreas(patches);
+  const double least_m2 = kFloorShareOfFootprint * FootprintM2(mesh);
   for (std::size_t i = 0; i < patches.size(); ++i) {
-    if (slabs_m2[i] >= kFloorShareOfFootprint * FootprintM2(mesh)) return patches[i].z_m;
+    if (slabs_m2[i] >= least_m2) return patches[i].z_m;
   }
   return kInfinity;
 }
