@@ -61,9 +61,8 @@ std::string KeptText(const std::optional<KeptDepth>& kept) {
   if (!kept) return "";
   return fmt::format(
       " {:.0f} % of what they see, most of it in columns {} to {} and rows {} to {} and about "
-      "{:.2g} "
-      "m away, keeps its depth from one image to another half a second later, while the rest "
-      "changes: does something move along with the camera there?",
+      "{:.2g} m away, keeps its depth from one image to another half a second later, while the "
+      "rest changes: does something move along with the camera there?",
       100.0 * kept->share, kept->first_column_px, kept->last_column_px, kept->first_row_px,
       kept->last_row_px, kept->depth_m);
 }
@@ -135,8 +134,7 @@ std::string SlightRemedyOf(const PoseDoubt& doubt) {
     case PoseReading::kFocal:
       return fmt::format(
           "with fx and fy {:.3f} ({:.3f} more or less) times as large: those of the camera are "
-          "off, "
-          "or its images distorted",
+          "off, or its images distorted",
           doubt.scale, doubt.sigma);
     case PoseReading::kScaled:
       return fmt::format(
@@ -159,8 +157,7 @@ std::string PoseDoubtText(const PoseDoubt& doubt) {
   if (doubt.sigma > 0.0) {
     return fmt::format(
         "the depth images fit the poses better, surfaces seen twice {:.2f} % of their depth apart "
-        "in "
-        "place of {:.2f} %, {}",
+        "in place of {:.2f} %, {}",
         kPercent * doubt.better_misfit, kPercent * doubt.misfit, SlightRemedyOf(doubt));
   }
   const std::string apart = fmt::format(
