@@ -84,29 +84,32 @@ constexpr double kNamedShare = 0.25;
 std::string ReasonOf(ShownView view, const ScanOptions& scan) {
   switch (view) {
     case ShownView::kNoDepth:
-      return "hold next to no depth";
+      return "there is next to no depth";
     case ShownView::kNoDepthAhead:
-      return "have hardly any depth at the camera's height, as what is there is out of the "
+      return "there is hardly any depth at the camera's height, as what is there is out of the "
              "sensor's range or returns nothing";
     case ShownView::kBeyondRange:
       return fmt::format(
-          "see at the camera's height mostly what is beyond {:g} m (mapper.scan.max_range_m)",
+          "the camera sees at its height mostly what is beyond {:g} m (mapper.scan.max_range_m)",
           scan.max_range_m);
     case ShownView::kBelowRange:
       return fmt::format(
-          "see at the camera's height mostly what is nearer than {:g} m (mapper.scan.min_range_m)",
+          "the camera sees at its height mostly what is nearer than {:g} m "
+          "(mapper.scan.min_range_m)",
           scan.min_range_m);
     case ShownView::kFloor:
       return fmt::format(
-          "look at the floor, with hardly anything above {:g} m (mapper.scan.band_low_m)",
+          "the camera looks at the floor, with hardly anything above {:g} m "
+          "(mapper.scan.band_low_m)",
           scan.band_low_m);
     case ShownView::kCeiling:
       return fmt::format(
-          "look at the ceiling, with hardly anything below {:g} m (mapper.scan.band_high_m)",
+          "the camera looks at the ceiling, with hardly anything below {:g} m "
+          "(mapper.scan.band_high_m)",
           scan.band_high_m);
     case ShownView::kFloorAndCeiling:
       return fmt::format(
-          "look at floor and ceiling, with hardly anything from {:g} to {:g} m "
+          "the camera looks at floor and ceiling, with hardly anything from {:g} to {:g} m "
           "(mapper.scan.band_low_m, band_high_m)",
           scan.band_low_m, scan.band_high_m);
     case ShownView::kOther:
@@ -122,7 +125,7 @@ std::string ReasonsOf(const UnmatchedViews& views, const ScanOptions& scan) {
     const auto view = static_cast<ShownView>(i);
     const int frames = views.Count(view);
     if (view == ShownView::kOther || frames == 0 || frames < kNamedShare * views.frames()) continue;
-    reasons.push_back(fmt::format("{} of the others, the first is frame {}, {}", frames,
+    reasons.push_back(fmt::format("in {} of the others, the first is frame {}, {}", frames,
                                   views.First(view), ReasonOf(view, scan)));
   }
   return fmt::format("{}", fmt::join(reasons, "; "));
