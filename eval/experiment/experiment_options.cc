@@ -18,6 +18,15 @@ void ResolveFile(std::string& name, const std::string& base_folder) {
     name = fs::weakly_canonical(fs::absolute(fs::path(base_folder) / name)).string();
 }
 
+// The message for any other unknown key would name the one nearest to it.
+void RefuseRecordings(const Config& config) {
+  if (!config.Has("sequence")) return;
+  throw InputError(
+      config.PlaceOfKey("sequence"),
+      "'sequence' holds how a recording is read, for `depthgrid map`; the images of an "
+      "experiment are rendered");
+}
+
 }  // namespace
 
 void ExperimentOptions::Visit(OptionsVisitor& v) {
@@ -42,7 +51,10 @@ ExperimentOptions ReadExperiment(const std::vector<const Config*>& layers,
                                  const std::string& base_folder) {
   Require(!layers.empty(), "an experiment is read from something");
   ExperimentOptions options;
-  for (const Config* layer : layers) layer->Read(options);
+  for (const Config* layer : layers) {
+    RefuseRecordings(*layer);
+    layer->Read(options);
+  }
   if (options.scene.empty()) throw InputError(layers.front()->Place(), "key 'scene' is missing");
   ResolveFile(options.scene, base_folder);
   ResolveFile(options.trajectory, base_folder);

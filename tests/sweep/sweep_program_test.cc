@@ -192,6 +192,7 @@ TEST_F(ProgramSweep, ErrorsAreOneLineAndLeaveNothing) {
   expect("axes: {frames: {from: 0, to: 9, count: 2, scale: log}}\n", "must lie above 0");
   expect("axes: {frames: {from: 1, to: 9, count: 1}}\n", "count 1 from 1 to 9 must be 2 or more");
   expect("axes: {frames: {from: 1, two: 9, count: 2}}\n", "unknown key 'two'");
+  expect("axes: {sequence.from_s: [1, 2]}\n", "for `depthgrid map`");
   EXPECT_EQ(Program("sweep ./sweep.yaml --shard 3/2 -o out").exit_code, 2);
   EXPECT_EQ(Program("sweep nothing_like_this -o out").exit_code, 2);
 }
