@@ -9,7 +9,7 @@ namespace depthgrid {
 namespace {
 
 // Incremented whenever the same input may give other scans.
-constexpr int kScanFormat = 14;
+constexpr int kScanFormat = 15;
 
 void Add(ContentHash& hash, const Pose3& pose) {
   for (const double v : pose.rotation.coeffs()) hash.Value(v);

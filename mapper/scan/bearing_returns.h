@@ -10,6 +10,7 @@
 
 #include "mapper/core/depth_image.h"
 #include "mapper/scan/bearing_lines.h"
+#include "mapper/scan/few_columns.h"
 #include "mapper/scan/noise_window.h"
 
 namespace depthgrid {
@@ -75,9 +76,6 @@ inline float DepthBetween(float z0, float z1, float share_of_1) {
   return nearer > 0.0F ? nearer : std::max(z0, z1);
 }
 
-// Images of few columns: between their pixels even a wall at 70 degrees of incidence recedes by
-// more than kSameSurfaceShare.
-constexpr int kFewColumns = 200;
 // Two pixels of a plane differ in 1/z by as much as their neighbours; by this share more or less
 // they still count as one surface.
 constexpr float kSlopeShare = 0.5F;

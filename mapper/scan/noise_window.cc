@@ -7,15 +7,20 @@
 #include <limits>
 #include <vector>
 
+#include "mapper/scan/few_columns.h"
+
 namespace depthgrid {
 namespace {
 
-// 1,280 samples of a 640x480 image, along few rows for memory locality.
+// 1,280 samples of an image of 640 or 160 columns, along few rows for memory locality.
 constexpr int kRows = 16;
 constexpr int kColumnStep = 8;
+constexpr int kColumnStepOfFew = 2;
 // Columns between the three pixels: sensors smooth over a few pixels, so adjacent ones would show
-// too little noise.
+// too little noise. In images of few columns three pixels so far apart too often see three things,
+// which would pass for noise (docs/tried.md, "Images of few columns").
 constexpr int kLag = 3;
+constexpr int kLagOfFew = 1;
 
 // The quantile of |second difference| that sigma is read from. High, because a quantised sensor
 // gives mostly zeros; not higher, because edges of objects fill the top tenth of a furnished room.
@@ -62,13 +67,16 @@ NoiseWindow::NoiseWindow() { inverse_sigma_.fill(kDefaultInverseSigma); }
 NoiseWindow::NoiseWindow(const DepthImage& image, Memory& differences) {
   for (std::vector<float>& of_class : differences) of_class.clear();
   std::array<int, kClassesOfReach> measured_at{};
+  const bool few = image.width_px <= kFewColumns;
+  const int lag = few ? kLagOfFew : kLag;
+  const int step = few ? kColumnStepOfFew : kColumnStep;
   const auto row_of = [&](int k) { return image.Row((2 * k + 1) * image.height_px / (2 * kRows)); };
   for (int k = 0; k < kRows; ++k) {
     const float* row = row_of(k);
     const float* next_row = row_of(std::min(k + 1, kRows - 1));
-    for (int u = kLag; u + kLag < image.width_px; u += kColumnStep) {
+    for (int u = lag; u + lag < image.width_px; u += step) {
       __builtin_prefetch(next_row + u);
-      const float left = row[u - kLag], here = row[u], right = row[u + kLag];
+      const float left = row[u - lag], here = row[u], right = row[u + lag];
       if (!(left > 0.0F && here > 0.0F && right > 0.0F)) continue;
       // Invalid pixels may have any value, also one too large for an integer.
       const float position = here / static_cast<float>(kClassM);

@@ -84,6 +84,18 @@ TEST(NoiseWindow, NearerThanAnythingMeasuredItIsThatOfTheNearest) {
   EXPECT_NEAR(window.SigmaM(1.0), 0.004, 0.0005);
 }
 
+// A wall behind uprights of 24 columns each: of the threes of pixels over seven columns a quarter
+// would see both.
+TEST(NoiseWindow, OfFewColumnsEdgesAreNoNoise) {
+  RandomStream random(4, RandomStage::kTest);
+  DepthImage uprights(160, 120);
+  for (int v = 0; v < uprights.height_px; ++v) {
+    for (int u = 0; u < uprights.width_px; ++u) uprights.Row(v)[u] = u / 24 % 2 == 0 ? 3.1F : 3.4F;
+  }
+  const NoiseWindow window(WithNoise(uprights, random, [](double z) { return 0.002 * z * z; }));
+  EXPECT_NEAR(window.SigmaM(3.25) / (3.25 * 3.25), 0.002, 0.0005);
+}
+
 // Of a wall beyond the reach the returns that noise made short of it are no wall.
 TEST(DepthToScan, NoiseDoesNotPullWallsIntoTheReach) {
   const PinholeCamera camera;
