@@ -141,11 +141,7 @@ void RequireFramesOfTheScene(const Trajectory& trajectory, const Eigen::AlignedB
 void RequireSecondsBetweenFrames(const Trajectory& trajectory, const std::string& path) {
   constexpr double kMostStepS = 5.0;
   if (trajectory.size() < 2) return;
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < trajectory.size(); ++i) {
-    steps_s.push_back(trajectory[i].stamp_s - trajectory[i - 1].stamp_s);
-  }
-  const double step_s = UsualStepS(steps_s);
+  const double step_s = UsualStepBetween(trajectory, &StampedPose::stamp_s);
   if (step_s <= kMostStepS) return;
   throw InputError(path, fmt::format("its stamps, which must be seconds, are {:g} apart (median), "
                                      "must be at most {:g}",

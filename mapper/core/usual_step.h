@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
+#include <vector>
 
 #include "mapper/core/median.h"
 #include "mapper/core/pose2.h"
@@ -14,6 +16,17 @@ namespace depthgrid {
 // The median step; 0 for none. Reorders the steps.
 inline double UsualStepS(std::span<double> steps_s) {
   return steps_s.empty() ? 0.0 : UpperMedianAmong(steps_s);
+}
+
+// The same of the steps from one item to the next; `stamp_s` is a projection, such as
+// &Item::stamp_s.
+template <typename Items, typename Projection>
+double UsualStepBetween(const Items& items, Projection stamp_s) {
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < items.size(); ++i) {
+    steps_s.push_back(std::invoke(stamp_s, items[i]) - std::invoke(stamp_s, items[i - 1]));
+  }
+  return UsualStepS(steps_s);
 }
 
 // The length of a step in usual steps: more than one where frames are missing, at most a thousand

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "mapper/core/counted.h"
 #include "mapper/core/usual_step.h"
@@ -24,11 +25,7 @@ double PartEndS(const FrameNames& names) {
 // the spans are similar, so that the numbers may be seconds.
 std::optional<double> RateBesideNumbers(const std::vector<double>& stamps_s, double numbers) {
   if (stamps_s.size() < 2 || 2.0 * (stamps_s.back() - stamps_s.front()) > numbers) return {};
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < stamps_s.size(); ++i) {
-    steps_s.push_back(stamps_s[i] - stamps_s[i - 1]);
-  }
-  const double step_s = UsualStepS(steps_s);
+  const double step_s = UsualStepBetween(stamps_s, std::identity());
   if (!(step_s > 0.0 && step_s <= 0.5)) return {};
   return 1.0 / step_s;
 }

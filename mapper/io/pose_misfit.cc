@@ -31,15 +31,6 @@ bool IsUnchanged(double z, double then) {
   return !(std::abs(then - z) > kChange * z) || !(then > 0.0);
 }
 
-// The typical time between images (a median, as pauses are few).
-double UsualImageStepS(std::span<const RecordedImage> images) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < images.size(); ++i) {
-    steps_s.push_back(images[i].stamp_s - images[i - 1].stamp_s);
-  }
-  return UsualStepS(steps_s);
-}
-
 double PairApartS(std::span<const RecordedImage> images, double usual_s) {
   const bool numbered = std::all_of(images.begin(), images.end(), [](const RecordedImage& image) {
     return image.stamp_s == std::floor(image.stamp_s);
@@ -51,7 +42,7 @@ double PairApartS(std::span<const RecordedImage> images, double usual_s) {
 
 std::vector<RecordedImage> PairsAmong(std::span<const RecordedImage> images) {
   std::vector<RecordedImage> pairs;
-  const double usual_s = UsualImageStepS(images);
+  const double usual_s = UsualStepBetween(images, &RecordedImage::stamp_s);
   const double apart_s = PairApartS(images, usual_s);
   const double most_apart_s = kMostApart * std::max(apart_s, usual_s);
   const std::size_t every = std::max<std::size_t>(1, images.size() / kCheckedPairs);

@@ -143,15 +143,6 @@ Sought ShiftOf(const PinholeCamera& camera, double frame_s) {
           }};
 }
 
-// The usual step between poses.
-double FrameStepS(const std::vector<SlamPose>& live) {
-  std::vector<double> steps_s;
-  for (std::size_t i = 1; i < live.size(); ++i) {
-    steps_s.push_back(live[i].stamp_s - live[i - 1].stamp_s);
-  }
-  return UsualStepS(steps_s);
-}
-
 }  // namespace
 
 std::optional<PoseDoubt> SlightDoubtOf(const PoseFits& fits, const PinholeCamera& camera,
@@ -182,7 +173,7 @@ std::optional<PoseDoubt> SlightDoubtOf(const PoseFits& fits, const PinholeCamera
   };
   seek(FocalOf(camera), {kLeastLogFactor, kMostLeft}, factor(PoseReading::kFocal));
   seek(ScaleOf(camera), {kLeastLogFactor, kMostLeft}, factor(PoseReading::kScaled));
-  const double frame_s = FrameStepS(live);
+  const double frame_s = UsualStepBetween(live, &SlamPose::stamp_s);
   if (!(frame_s > 0.0) || frame_s > kMostFrameS) return best;
   seek(ShiftOf(camera, frame_s), {kLeastFrames * frame_s, PoseFits::kMostMisfit},
        [&](double shift_s) {
