@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 #include "mapper/core/angle.h"
 #include "mapper/io/carmen_scan_impl.h"
@@ -27,25 +29,37 @@ Beam BeamOf(double bearing_rad, double range_m, const LaserReach& reach,
   return beam;
 }
 
+bool IsGap(const Beam& beam) { return !beam.hit && beam.clear_to_m > 0.0F; }
+
+// The range of the nearer hit beside the gap of beams [first, after) if the gap is too narrow there
+// for an opening, else empty. Next to an end of the scan there is one hit; the gap is taken to end
+// one step beyond the last beam.
+std::optional<float> BarOf(const std::vector<Beam>& beams, std::size_t first, std::size_t after,
+                           double narrowest_m) {
+  if (after - first == beams.size()) return {};
+  const Beam& right = beams[first > 0 ? first - 1 : after];
+  const Beam& left = beams[after < beams.size() ? after : first - 1];
+  if (!right.hit || !left.hit) return {};
+  const float nearer_m = std::min(left.range_m, right.range_m);
+  const double step_rad = std::abs(beams[1].bearing_rad - beams[0].bearing_rad);
+  const double width_rad = static_cast<double>(after - first + 1) * step_rad;
+  if (nearer_m * width_rad >= narrowest_m) return {};
+  return nearer_m;
+}
+
 // Gaps that are too narrow for an opening clear no farther than the hits beside them.
 void NarrowGaps(Scan& scan, double narrowest_m) {
   std::vector<Beam>& beams = scan.beams;
-  const auto is_gap = [](const Beam& beam) { return !beam.hit && beam.clear_to_m > 0.0F; };
-  for (std::size_t first = 1; first + 1 < beams.size(); ++first) {
-    if (!beams[first - 1].hit || !is_gap(beams[first])) continue;
+  for (std::size_t first = 0; first < beams.size(); ++first) {
+    if (!IsGap(beams[first])) continue;
     std::size_t after = first;
-    while (after < beams.size() && is_gap(beams[after])) ++after;
-    if (after == beams.size()) return;
-    const Beam& left = beams[after];
-    const Beam& right = beams[first - 1];
-    if (left.hit) {
-      const float nearer_m = std::min(left.range_m, right.range_m);
-      const bool is_narrow = nearer_m * (left.bearing_rad - right.bearing_rad) < narrowest_m;
-      for (std::size_t i = first; is_narrow && i < after; ++i) {
-        beams[i].clear_to_m = std::min(beams[i].clear_to_m, nearer_m);
+    while (after < beams.size() && IsGap(beams[after])) ++after;
+    if (const auto bar_m = BarOf(beams, first, after, narrowest_m)) {
+      for (std::size_t i = first; i < after; ++i) {
+        beams[i].clear_to_m = std::min(beams[i].clear_to_m, *bar_m);
       }
     }
-    first = after - 1;
+    first = after;
   }
 }
 

@@ -12,7 +12,7 @@ namespace depthgrid {
 namespace {
 
 // Beams a degree apart: two between hits at 4 and 5 m are 4 m x 3 degrees = 0.21 m wide, seven are
-// 0.56 m.
+// 0.56 m. One beside the last hit is 0.14 m, four before the first are 0.35 m.
 TEST(CarmenScan, NarrowGapsWithoutReturnClearNoFartherThanTheHitsBeside) {
   CarmenScan line;
   line.bearing_step_rad = RadFromDeg(1.0);
@@ -22,7 +22,12 @@ TEST(CarmenScan, NarrowGapsWithoutReturnClearNoFartherThanTheHitsBeside) {
     EXPECT_FALSE(scan.beams[i].hit) << i;
     EXPECT_EQ(scan.beams[i].clear_to_m, 4.0F) << i;
   }
-  for (const std::size_t i : {5U, 8U, 11U, 13U}) EXPECT_EQ(scan.beams[i].clear_to_m, 5.0F) << i;
+  for (const std::size_t i : {5U, 8U, 11U}) EXPECT_EQ(scan.beams[i].clear_to_m, 5.0F) << i;
+  EXPECT_EQ(scan.beams[13].clear_to_m, 4.0F);
+  line.range_m = {90, 90, 90, 90, 4, 4, 4};
+  EXPECT_EQ(ScanOf(line, {}).beams[0].clear_to_m, 5.0F);
+  line.range_m = {90, 90, 90};
+  EXPECT_EQ(ScanOf(line, {}).beams[0].clear_to_m, 5.0F);
   CarmenLogOptions wide;
   wide.no_return_gap_m = 0.0;
   EXPECT_EQ(ScanOf(line, wide).beams[1].clear_to_m, 5.0F);
