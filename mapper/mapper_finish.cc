@@ -3,6 +3,7 @@
 
 #include "mapper/core/level.h"
 #include "mapper/doubled_walls.h"
+#include "mapper/finished_map.h"
 #include "mapper/frame_check.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/mapper_state.h"
@@ -37,7 +38,9 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
     result.guessed.push_back(
         {frame(part.first), ends ? std::optional(frame(part.end - 1)) : std::nullopt});
   }
-  result.map = final.map ? std::move(*final.map) : state_->Draw(result.mapped);
+  const GridOptions& grid = state_->options.grid;
+  result.map = final.map && !IsSharpened(result.mapped, grid) ? std::move(*final.map)
+                                                              : DrawFinished(result.mapped, grid);
   return result;
 }
 

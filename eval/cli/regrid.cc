@@ -5,12 +5,11 @@
 #include "eval/cli/commands.h"
 #include "eval/files/run_files.h"
 #include "eval/output/output_file.h"
-#include "mapper/core/error.h"
-#include "mapper/grid/map_drawing.h"
+#include "mapper/finished_map.h"
 #include "mapper/io/config.h"
 #include "mapper/io/file.h"
 #include "mapper/io/map_file.h"
-#include "mapper/io/scan_file.h"
+#include "mapper/io/mapped_files.h"
 
 namespace depthgrid::cli {
 namespace {
@@ -58,14 +57,9 @@ void Regrid(const RegridArguments& arguments) {
   constexpr const char* kRemedy = "move it away, or --force to replace it";
   RequireNewFile(map.string(), arguments.force, kRemedy);
   RequireNewFile(MapImageOf(map.string(), arguments.map_mode), arguments.force, kRemedy);
-  const std::vector<StoredScan> scans = ReadScans((folder / "scans.bin").string());
-  if (scans.empty()) throw InputError((folder / "scans.bin").string(), "holds no scan");
-  MapDrawing drawing(options);
-  for (const StoredScan& stored : scans) {
-    drawing.Add(stored.frame, *stored.scan, stored.map_from_base);
-  }
+  const std::vector<MappedFrame> frames = ReadMapped(arguments.folder);
   const std::string replaced = ImageOfMap(map.string());
-  WriteMap(map.string(), drawing.Map(), arguments.map_mode);
+  WriteMap(map.string(), DrawFinished(frames, options), arguments.map_mode);
   // In another map mode the image has another name.
   if (!replaced.empty() && replaced != ImageOfMap(map.string())) fs::remove(folder / replaced);
   fmt::print("{}\n", map.string());

@@ -25,6 +25,9 @@ void GridOptions::Visit(OptionsVisitor& v) {
            "wall; 0 keeps all");
   v.Number("surface_radius_m", surface_radius_m, {0.0, 1.0},
            "finished map: how far around a cell its surface is compared, metres");
+  v.Number("sharpen_sigmas", sharpen_sigmas, {0.0, 10.0},
+           "finished map: a laser's hits that err by more than a cell are drawn on the wall they "
+           "are of, so many standard deviations away at most; 0: where they were measured");
 }
 
 }  // namespace depthgrid
