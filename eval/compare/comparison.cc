@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "eval/compare/comparison_pairs.h"
+#include "eval/compare/fixed_settings.h"
 #include "eval/statistics/holm.h"
 #include "eval/statistics/metric_direction.h"
 #include "eval/statistics/sample_size.h"
@@ -171,7 +172,8 @@ bool IsLeftOut(const MetricComparison& compared, Comparison& comparison) {
 
 }  // namespace
 
-Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOptions& options) {
+Comparison Compare(SweepResults a, SweepResults b, const CompareOptions& options) {
+  AlignFixedSettings(options, a, b);
   Comparison comparison;
   const RunPairs pairs = PairsOf(a, b, options, comparison);
   const bool of_all = options.metrics == std::vector<std::string>{"all"};

@@ -54,9 +54,10 @@ struct DifferentSetting {
 };
 
 struct Comparison {
-  std::vector<std::string> paired_by;       // the axes whose values make a pair
-  std::vector<DifferentSetting> different;  // axes of both that are not among them
-  int pairs = 0;                            // number of pairs that count
+  std::vector<std::string> paired_by;  // the axes whose values make a pair
+  // Settings with a single value on each side, but not the same one.
+  std::vector<DifferentSetting> different;
+  int pairs = 0;  // number of pairs that count
   // Sample size of the tests: pairs with the same seed are averaged and count as one.
   int units = 0;
   // Crossed seed axes; the units are as many as the smallest has (SeedUnits).
@@ -77,8 +78,9 @@ struct Comparison {
   int pairs_for_all = 0;
 };
 
-// Throws InputError for an unknown metric or axis, and for runs that form no pair or several.
-Comparison Compare(const SweepResults& a, const SweepResults& b, const CompareOptions& options);
+// Throws InputError for an unknown metric or axis, for runs that form no pair or several, and for
+// sides whose runs saw different things.
+Comparison Compare(SweepResults a, SweepResults b, const CompareOptions& options);
 
 std::string ComparisonJson(const Comparison& comparison, const std::string& a,
                            const std::string& b);

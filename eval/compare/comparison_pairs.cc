@@ -8,6 +8,7 @@
 #include <map>
 #include <set>
 
+#include "eval/compare/fixed_settings.h"
 #include "eval/sweep/sweep_axes.h"
 #include "mapper/core/error.h"
 
@@ -104,11 +105,6 @@ std::string OnlyValue(const SweepResults& table, const std::string& key,
   return is_only ? first : "";
 }
 
-// Keys that determine what is seen: runs that differ in them cannot be a pair.
-bool MakesPairs(const std::string& key) {
-  return IsSeedKey(key) || key == "scene" || key == "trajectory" || key == "frames";
-}
-
 // Removes from `keys` the settings that have a single value on each side, but different ones, as do
 // keys that change together with one in a condition.
 std::vector<DifferentSetting> TakeDifferent(const SweepResults& a,
@@ -126,6 +122,28 @@ std::vector<DifferentSetting> TakeDifferent(const SweepResults& a,
     return true;
   });
   return different;
+}
+
+// A side's settings that are fixed, also by being the same in all of the chosen rows.
+FixedSettings FixedIn(const SweepResults& table, const std::vector<std::size_t>& rows) {
+  FixedSettings fixed = FixedSettingsOf(table);
+  for (const SweepParameter& parameter : table.parameters) {
+    const std::string value = OnlyValue(table, parameter.key, rows);
+    if (!value.empty()) fixed.values.emplace_back(parameter.key, value);
+  }
+  return fixed;
+}
+
+// Adds the settings in which the sides differ without their being axes of both.
+void AddFixedDifferences(const SweepResults& a, const std::vector<std::size_t>& rows_a,
+                         const SweepResults& b, const std::vector<std::size_t>& rows_b,
+                         const CompareOptions& options, std::vector<DifferentSetting>& different) {
+  for (DifferentSetting& setting : FixedDifferences(FixedIn(a, rows_a), FixedIn(b, rows_b))) {
+    const std::string& key = setting.key;
+    const bool by_condition = IsFixed(options.where_a, key) && IsFixed(options.where_b, key);
+    if (by_condition || (HasAxis(a, key) && HasAxis(b, key))) continue;
+    different.push_back(std::move(setting));
+  }
 }
 
 std::string NameOfRun(const SweepResults& table, std::size_t row) {
@@ -232,6 +250,7 @@ RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOpti
   const std::vector<std::size_t> chosen_b = RowsThatMeet(b, options.where_b);
   comparison.paired_by = SharedAxes(a, b, options);
   comparison.different = TakeDifferent(a, chosen_a, b, chosen_b, comparison.paired_by);
+  AddFixedDifferences(a, chosen_a, b, chosen_b, options, comparison.different);
   const auto rows_a = RowsByKey(a, chosen_a, comparison.paired_by);
   const auto rows_b = RowsByKey(b, chosen_b, comparison.paired_by);
   const std::vector<std::size_t> seed_axes = SeedAxes(comparison.paired_by);

@@ -55,8 +55,9 @@ std::vector<fs::path> RunFolders(const std::string& folder) {
 }
 
 void AddParameters(const fs::path& run, SweepResults& table) {
-  constexpr std::array<const char*, 7> kKeys = {
-      "scene", "trajectory", "frames", "seed", "depth_seed", "slam_seed", "trajectory_seed"};
+  constexpr std::array<const char*, 8> kKeys = {"scene",     "trajectory",     "movers",
+                                                "frames",    "seed",           "depth_seed",
+                                                "slam_seed", "trajectory_seed"};
   const Config settings = Config::FromFile((run / "run.yaml").string());
   if (table.parameters.empty()) {
     for (const char* key : kKeys) table.parameters.push_back({key, {}, {}});

@@ -28,21 +28,6 @@ struct AllSettings {
   }
 };
 
-// Of the keys below a map, by their paths.
-std::vector<std::pair<std::string, std::string>> Leaves(const Config& tree,
-                                                        const std::string& prefix = "") {
-  std::vector<std::pair<std::string, std::string>> leaves;
-  for (const ConfigEntry& entry : tree.Entries()) {
-    if (!entry.map) {
-      leaves.emplace_back(prefix + entry.key, entry.text);
-      continue;
-    }
-    const auto below = Leaves(*entry.map, prefix + entry.key + ".");
-    leaves.insert(leaves.end(), below.begin(), below.end());
-  }
-  return leaves;
-}
-
 AllSettings DefaultsFor(const std::string& profile) {
   AllSettings defaults;
   Config config;
@@ -78,9 +63,10 @@ std::vector<std::string> ChangedSettings(const Config& run_yaml) {
   const bool noise_of_profile = run_yaml.Text("mapper.fusion.slam_noise.source") == "profile";
   const std::string yaml = ToYaml(profile.empty() ? AllSettings() : DefaultsFor(profile));
   std::map<std::string, std::string> defaults;
-  for (const auto& [key, value] : Leaves(Config::FromText(yaml, "defaults"))) defaults[key] = value;
+  for (const auto& [key, value] : LeavesOf(Config::FromText(yaml, "defaults")))
+    defaults[key] = value;
   std::vector<std::string> changed;
-  for (const auto& [key, value] : Leaves(run_yaml)) {
+  for (const auto& [key, value] : LeavesOf(run_yaml)) {
     const auto usual = defaults.find(key);
     if (usual == defaults.end() || usual->second == value) continue;
     if (!IsKnownElsewhere(key, noise_of_profile)) changed.push_back(key + " " + value);
@@ -91,7 +77,7 @@ std::vector<std::string> ChangedSettings(const Config& run_yaml) {
 std::vector<DifferingSetting> DifferingSettings(const std::vector<Config>& run_yamls) {
   std::vector<DifferingSetting> differing;
   if (run_yamls.empty()) return differing;
-  for (const auto& [key, first] : Leaves(run_yamls.front())) {
+  for (const auto& [key, first] : LeavesOf(run_yamls.front())) {
     const bool follows = key == "scene" || key == "mapper.scan.floor_z_m" ||
                          key.starts_with("slam.") || key.starts_with("provenance.") ||
                          key.starts_with("mapper.fusion.slam_noise.");

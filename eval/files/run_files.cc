@@ -121,4 +121,18 @@ std::string SettingOf(const Config& settings, const std::string& key) {
   return fmt::format("{}", fmt::join(settings.List(key), ", "));
 }
 
+std::vector<std::pair<std::string, std::string>> LeavesOf(const Config& settings,
+                                                          const std::string& prefix) {
+  std::vector<std::pair<std::string, std::string>> leaves;
+  for (const ConfigEntry& entry : settings.Entries()) {
+    if (!entry.map) {
+      leaves.emplace_back(prefix + entry.key, entry.text);
+      continue;
+    }
+    const auto below = LeavesOf(*entry.map, prefix + entry.key + ".");
+    leaves.insert(leaves.end(), below.begin(), below.end());
+  }
+  return leaves;
+}
+
 }  // namespace depthgrid

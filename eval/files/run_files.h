@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "eval/files/csv_table.h"
@@ -46,5 +47,9 @@ constexpr int kMapMarginCells = 4;
 
 // A setting as text, with commas between the items of a list; empty if missing.
 std::string SettingOf(const Config& settings, const std::string& key);
+
+// Every setting by its key's path, in the order of the file, with its value as YAML.
+std::vector<std::pair<std::string, std::string>> LeavesOf(const Config& settings,
+                                                          const std::string& prefix = "");
 
 }  // namespace depthgrid
