@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <set>
@@ -74,6 +75,37 @@ std::vector<std::string> ChangedSettings(const Config& run_yaml) {
   return changed;
 }
 
+namespace {
+
+// What a setting's value comes to: a path named or left to the scene may be the same, and a seed of
+// 0 is that of the run.
+std::string EffectiveValue(const Config& run_yaml, const std::string& key) {
+  std::string value = SettingOf(run_yaml, key);
+  if (key == "trajectory") {
+    const std::string hash = SettingOf(run_yaml, "provenance.trajectory_hash");
+    return hash.empty() ? value : hash;
+  }
+  const bool is_of_run = (key == "depth_seed" || key == "slam_seed") && value == "0";
+  return is_of_run ? SettingOf(run_yaml, "seed") : value;
+}
+
+// Names the path of runs that leave it to the scene as the others that take the same one do.
+void NameDefaults(const std::vector<std::string>& effective, std::vector<std::string>& values) {
+  const std::vector<std::string> given = values;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    for (std::size_t k = 0; k < given.size() && values[i].empty(); ++k) {
+      if (effective[k] == effective[i]) values[i] = given[k];
+    }
+    if (values[i].empty()) values[i] = "default";
+  }
+}
+
+bool AreAllEqual(const std::vector<std::string>& values) {
+  return std::equal(values.begin() + 1, values.end(), values.begin());
+}
+
+}  // namespace
+
 std::vector<DifferingSetting> DifferingSettings(const std::vector<Config>& run_yamls) {
   std::vector<DifferingSetting> differing;
   if (run_yamls.empty()) return differing;
@@ -83,12 +115,14 @@ std::vector<DifferingSetting> DifferingSettings(const std::vector<Config>& run_y
                          key.starts_with("mapper.fusion.slam_noise.");
     if (follows) continue;
     DifferingSetting setting{key, {}};
-    bool same = true;
+    std::vector<std::string> effective;
     for (const Config& run_yaml : run_yamls) {
       setting.values.push_back(SettingOf(run_yaml, key));
-      same = same && setting.values.back() == setting.values.front();
+      effective.push_back(EffectiveValue(run_yaml, key));
     }
-    if (!same) differing.push_back(std::move(setting));
+    if (AreAllEqual(setting.values) || AreAllEqual(effective)) continue;
+    NameDefaults(effective, setting.values);
+    differing.push_back(std::move(setting));
   }
   return differing;
 }

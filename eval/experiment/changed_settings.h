@@ -21,8 +21,8 @@ struct DifferingSetting {
   std::vector<std::string> values;
 };
 
-// The settings that differ between these runs, in the order of the first file. Left out are the
-// scene, SLAM's settings, and what follows from either.
+// The settings that differ in effect between these runs, in the order of the first file. Left out
+// are the scene, SLAM's settings, and what follows from either.
 std::vector<DifferingSetting> DifferingSettings(const std::vector<Config>& run_yamls);
 
 // The name of SLAM's profile; "own settings over ground_truth" where other settings add errors to

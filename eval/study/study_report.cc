@@ -122,6 +122,10 @@ Json DifferencesJson(const std::vector<CaseFiles>& cases) {
   std::vector<Config> settings;
   for (const CaseFiles& c : cases) {
     settings.push_back(Config::FromText(c.run.settings, c.head.name + "/run.yaml"));
+    // 0: as many as the path has, which another case may have as a number.
+    if (SettingOf(settings.back(), "frames") == "0") {
+      settings.back().Set("frames", std::to_string(c.run.frames.rows));
+    }
   }
   Json json = Json::array();
   for (const DifferingSetting& setting : DifferingSettings(settings)) {

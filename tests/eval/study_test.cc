@@ -237,6 +237,32 @@ TEST_F(StudyRun, ThePageShowsEveryCase) {
   EXPECT_LE(browser.Evaluate("document.documentElement.scrollWidth - innerWidth").get<int>(), 0);
 }
 
+// The page compares what the cases did, not how their file puts it.
+TEST_F(StudyRun, ThePageListsNoDifferenceThatHasNoEffect) {
+  std::string room = kRoom;
+  room +=
+      "  pause:\n    kind: handheld\n    waypoints:\n"
+      "      - {at: [1.5, 1.0, 1.1], look_at: [1.5, 4.0, 1.0]}\n"
+      "      - {at: [1.6, 1.2, 1.1], look_at: [1.5, 4.0, 1.0]}\n";
+  Write("room.yaml", room);
+  const std::string head = "scene: ./room.yaml\nsensor: {width: 80, height: 60}\ncases:\n";
+  Write("named.yaml", "frames: 6\n" + head +
+                          "  - {name: a, trajectory: look_around, depth_seed: 1}\n"
+                          "  - {name: b}\n");
+  Succeed("run ./named.yaml -o named");
+  EXPECT_THAT(ReadFile(Path("named/report.html")), HasSubstr("\"differences\":[]"));
+  Write("three.yaml", "frames: 6\n" + head +
+                          "  - {name: a, trajectory: look_around}\n  - {name: b}\n"
+                          "  - {name: c, trajectory: pause}\n");
+  Succeed("run ./three.yaml -o three");
+  EXPECT_THAT(ReadFile(Path("three/report.html")),
+              HasSubstr("\"differences\":[{\"key\":\"trajectory\",\"values\":[\"look_around\","
+                        "\"look_around\",\"pause\"]}]"));
+  Write("two.yaml", "frames: 6\n" + head + "  - {name: a}\n  - {name: b, trajectory: pause}\n");
+  Succeed("run ./two.yaml -o two");
+  EXPECT_THAT(ReadFile(Path("two/report.html")), HasSubstr("\"values\":[\"default\",\"pause\"]"));
+}
+
 // Cases that differ in something else than the poses: none is left out, each has its own path, and
 // maps in other cells are held beside each other only.
 TEST_F(StudyRun, ThePageTellsCasesOfOneRoomApart) {
