@@ -50,10 +50,19 @@ std::string HashWithMovers(const Scene& scene) {
   return hash.Hex();
 }
 
+// An experiment may have several scenes, so the message names the one that lacks a name.
+std::string OfScene(const std::string& message, const ExperimentOptions& options) {
+  return fmt::format("{} (scene {})", message, options.scene);
+}
+
 // The scene with the experiment's movers.
 Scene SceneOf(const ExperimentOptions& options) {
   Scene scene = LoadNamedScene(options.scene);
-  KeepMovers(options.movers, scene.movers);
+  try {
+    KeepMovers(options.movers, scene.movers);
+  } catch (const SettingError& error) {
+    throw SettingError(error.key(), OfScene(error.message(), options));
+  }
   return scene;
 }
 
@@ -69,8 +78,10 @@ const std::string& NamedTrajectory(const Scene& scene, const ExperimentOptions& 
   if (name.empty()) return scene.trajectories.begin()->first;
   const auto found = scene.trajectories.find(name);
   if (found != scene.trajectories.end()) return found->first;
-  throw InputError(place, fmt::format("trajectory is '{}', must be one of {} or a TUM file{}", name,
-                                      fmt::join(names, ", "), DidYouMean(name, names)));
+  throw InputError(
+      place, OfScene(fmt::format("trajectory is '{}', must be one of {} or a TUM file{}", name,
+                                 fmt::join(names, ", "), DidYouMean(name, names)),
+                     options));
 }
 
 Eigen::AlignedBox3d BoundsOfMesh(const TriangleMesh& mesh) {
@@ -242,6 +253,8 @@ std::string WorldHash(const ExperimentOptions& options) {
   AddPath(scene, options, hash);
   return hash.Hex();
 }
+
+void RequireMovers(const ExperimentOptions& options) { SceneOf(options); }
 
 void RequireNames(const ExperimentOptions& options) {
   const Scene scene = SceneOf(options);

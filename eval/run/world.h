@@ -44,6 +44,9 @@ std::string WorldHash(const ExperimentOptions& options);       // of both togeth
 // be read. Throws InputError. Faster than LoadWorld, which checks more.
 void RequireNames(const ExperimentOptions& options);
 
+// The same of the scene and the movers alone, whatever the path.
+void RequireMovers(const ExperimentOptions& options);
+
 // Where the path is defined, for error messages: its file, or its line in the scene's file.
 std::string PlaceOfPath(const Scene& scene, const ExperimentOptions& options);
 

@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <set>
-#include <utility>
 
 #include "eval/doubts/truth_check.h"
 #include "eval/experiment/shipped.h"
@@ -40,37 +41,51 @@ std::vector<ExperimentOptions> RoomsOf(const SweepPlan& plan) {
   return rooms;
 }
 
-// The error in the names of a room's runs; empty if there is none.
-std::string FailureOf(const SweepPlan& plan, const ExperimentOptions& options) {
+// The error that a check of a room's names throws; empty if there is none.
+std::string FailureOf(const SweepPlan& plan, const std::function<void()>& check) {
   try {
-    NamingPlaces(plan.PlaceOfKey(), [&] { RequireNames(options); });
+    NamingPlaces(plan.PlaceOfKey(), check);
   } catch (const InputError& error) {
     return error.what();
   }
   return "";
 }
 
-std::vector<std::string> NamesIn(const ExperimentOptions& options) {
-  return {"scene " + options.scene, "trajectory " + options.trajectory, "movers " + options.movers};
+// A scene, path or movers, with the error in it; empty if it can be used.
+struct NamedPart {
+  std::string name;
+  std::string failure;
+};
+
+// Each is judged by itself: a path that the scene lacks says nothing about scene and movers.
+std::vector<NamedPart> PartsOf(const SweepPlan& plan, const ExperimentOptions& options) {
+  ExperimentOptions empty = options;
+  empty.movers = kNoMovers;
+  const std::string scene = FailureOf(plan, [&] { RequireMovers(empty); });
+  std::vector<NamedPart> parts = {{"scene " + options.scene, scene}};
+  if (!scene.empty()) return parts;
+  parts.push_back({"trajectory " + options.trajectory,  //
+                   FailureOf(plan, [&] { RequireNames(empty); })});
+  parts.push_back({"movers " + options.movers, FailureOf(plan, [&] { RequireMovers(options); })});
+  return parts;
 }
 
 }  // namespace
 
 void RequireRooms(const SweepPlan& plan) {
   std::set<std::string> usable;
-  std::vector<std::pair<std::string, ExperimentOptions>> failed;
+  std::vector<NamedPart> failed;
   for (const ExperimentOptions& options : RoomsOf(plan)) {
-    const std::string failure = FailureOf(plan, options);
-    if (!failure.empty()) {
-      failed.emplace_back(failure, options);
-      continue;
+    for (const NamedPart& part : PartsOf(plan, options)) {
+      if (part.failure.empty()) {
+        usable.insert(part.name);
+      } else {
+        failed.push_back(part);
+      }
     }
-    for (const std::string& name : NamesIn(options)) usable.insert(name);
   }
-  for (const auto& [failure, options] : failed) {
-    for (const std::string& name : NamesIn(options)) {
-      if (!usable.contains(name)) throw InputError("", failure);
-    }
+  for (const NamedPart& part : failed) {
+    if (!usable.contains(part.name)) throw InputError("", part.failure);
   }
 }
 

@@ -12,8 +12,9 @@ namespace depthgrid {
 // changed room.
 std::string RoomsText(const SweepPlan& plan);
 
-// Throws InputError for a scene, path or movers with which every run must fail, because the name is
-// wrong or the file is missing. A combination that does not fit is a failed run instead.
+// Throws InputError for a scene that cannot be read, and for a path or movers that none of their
+// scenes has, or whose file is missing: every run of them must fail. A combination that does not
+// fit is a failed run instead.
 void RequireRooms(const SweepPlan& plan);
 
 // Warnings about the paths, one line each. Rooms that cannot be read are skipped, because their

@@ -48,6 +48,24 @@ TEST_F(SweepRooms, NamesThatGoTogetherSomewhereAreRun) {
   EXPECT_THAT(outcome.err, HasSubstr("2 of 4 runs failed, the first: ./sweep.yaml:4: trajectory"));
 }
 
+// One scene has the path and the movers that all runs name: those of the other scene fail.
+TEST_F(SweepRooms, ASceneWithoutTheMoversOfAnotherIsRun) {
+  std::string other = kRoom;
+  other.replace(other.find("look_around"), 11, "another_way");
+  other +=
+      "movers:\n  visitor:\n    shapes: [{shape: cylinder, radius_m: 0.2, height_m: 1.7}]\n"
+      "    there_and_back: true\n    waypoints: [{at: [0.4, 3.4]}, {at: [2.6, 3.4]}]\n";
+  Write("other.yaml", other);
+  for (const char* set : {"movers: visitor", "trajectory: another_way"}) {
+    Write("sweep.yaml", std::string("experiment: ./small.yaml\nset: {") + set +
+                            "}\naxes:\n  scene: [./room.yaml, ./other.yaml]\n");
+    const Outcome outcome = Program("sweep ./sweep.yaml --force -o " + std::string(1, set[0]));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("1 of 2 runs failed, the first: ./sweep.yaml:2: "));
+    EXPECT_THAT(outcome.err, HasSubstr("(scene " + Path("room.yaml") + ")"));
+  }
+}
+
 TEST_F(SweepRooms, ValuesThatContradictEachOtherAreNamedByTheirLine) {
   Write("sweep.yaml",
         "experiment: ./small.yaml\naxes:\n  sensor.min_range_m: [0.1, 4]\n"
