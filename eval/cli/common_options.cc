@@ -11,6 +11,12 @@
 namespace depthgrid::cli {
 namespace {
 
+// Empty unless the key's value is a file name that begins with ~.
+std::string RefusalOfTildeIn(const std::string& assignment) {
+  const auto equals = assignment.find('=');
+  return equals == std::string::npos ? "" : RefusalOfTilde(assignment.substr(equals + 1));
+}
+
 // File names on the command line are relative to the current folder; those in an experiment, whose
 // keys these override, to the experiment's folder.
 std::string WithFileFromHere(std::string assignment) {
@@ -30,8 +36,9 @@ void AddSet(CLI::App& app, CommonArguments& common, const char* meaning) {
       ->allow_extra_args(false)
       ->transform(CLI::Validator(
           [](std::string& assignment) {
-            assignment = WithFileFromHere(std::move(assignment));
-            return std::string();
+            const std::string refusal = RefusalOfTildeIn(assignment);
+            if (refusal.empty()) assignment = WithFileFromHere(std::move(assignment));
+            return refusal;
           },
           ""));
 }
@@ -39,12 +46,14 @@ void AddSet(CLI::App& app, CommonArguments& common, const char* meaning) {
 CLI::Option* MeantFolder(CLI::Option* option) {
   return option->transform(CLI::Validator(
       [](std::string& path) {
+        const std::string refusal = RefusalOfTilde(path);
+        if (!refusal.empty()) return refusal;
         std::error_code error;  // errors are reported when the folder is created
         const auto around = std::filesystem::path(path).parent_path();
-        if (around.empty() || std::filesystem::exists(around, error)) return "";
+        if (around.empty() || std::filesystem::exists(around, error)) return refusal;
         const auto meant = std::filesystem::weakly_canonical(path, error);
         if (!error && path.find("..") != std::string::npos) path = meant.string();
-        return "";
+        return refusal;
       },
       ""));
 }

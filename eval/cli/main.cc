@@ -160,7 +160,7 @@ void AddSweep(Program& program) {
   app->add_option("--merge", arguments->merge, "Join the parts in these folders into one table")
       ->type_name("DIR");
   app->add_option("--reuse", arguments->reuse, "Take runs of the same values from it (repeatable)")
-      ->type_name("OLD")
+      ->type_name("DIR")
       ->allow_extra_args(false);
   app->add_option("--executor", arguments->executor, "Where runs are done")
       ->check(CLI::IsMember({"local", "slurm"}))
@@ -354,15 +354,15 @@ void AddCommands(Program& program) {
   AddReport(program);
 }
 
-// Rejects empty names, which are most likely an unset shell variable.
+// Rejects empty names, which are most likely an unset shell variable, and those that begin with ~.
 void RequireNames(CLI::App& app) {
-  const auto is_empty = [](const std::string& name) {
-    return name.empty() ? std::string("is empty") : std::string();
+  const auto refusal = [](const std::string& name) {
+    return name.empty() ? std::string("is empty") : RefusalOfTilde(name);
   };
   for (CLI::Option* option : app.get_options()) {
     const std::string type = option->get_type_name();
     const bool is_name = option->get_positional() || type == "FILE" || type == "DIR";
-    if (is_name) option->check(CLI::Validator(is_empty, ""));
+    if (is_name) option->check(CLI::Validator(refusal, ""));
   }
   for (CLI::App* command : app.get_subcommands({})) RequireNames(*command);
 }

@@ -144,6 +144,14 @@ std::string RefusalIfNegative(const std::string& text) {
   return value && *value >= 0.0 ? "" : "is '" + text + "', must be a number, 0 or more";
 }
 
+std::string RefusalOfTilde(const std::string& path) {
+  if (!path.starts_with("~/") && path != "~") return "";
+  return fmt::format(
+      "is '{}', whose ~ the shell has left as it is: must be $HOME{} instead, or stand apart from "
+      "the option, without = and quotes",
+      path, path.substr(1));
+}
+
 std::string RefusalUnlessPlace(const std::string& text) {
   return PlaceOf(text) ? "" : fmt::format("is '{}', {}", text, kPlaceRule);
 }

@@ -17,6 +17,9 @@ std::string RefusalUnlessPositive(const std::string& text);
 std::string RefusalUnlessFinite(const std::string& text);
 std::string RefusalIfNegative(const std::string& text);
 
+// For check(): shells replace ~ only at the beginning of an unquoted word, so not in --output=~/x.
+std::string RefusalOfTilde(const std::string& path);
+
 // For check(): a place in a map, "X,Y,YAW_DEG".
 std::string RefusalUnlessPlace(const std::string& text);
 

@@ -306,5 +306,20 @@ TEST_F(ProgramOutput, RenderSaysThatNoImageShowsAnything) {
   EXPECT_EQ(said(""), "");
 }
 
+// Shells replace ~ only at the beginning of a word, so this would be a folder named ~ here.
+TEST_F(ProgramOutput, ATildeThatTheShellHasLeftIsRefused) {
+  const std::string says = "whose ~ the shell has left as it is: must be $HOME/td instead";
+  for (const char* arguments :
+       {"run ./small.yaml --output=~/td", "run ./small.yaml -o '~/td'", "map '~/td' -o out",
+        "map . -o out --poses=~/td", "sweep ./sweep.yaml -o out --cache=~/td", "report '~/td'",
+        "run ./small.yaml -o out --set scene=~/td", "run ./small.yaml -o '~/td/../x'",
+        "eval trajectory a.txt b.txt --errors=~/td", "compare '~/td' b",
+        "sweep ./sweep.yaml -o out --reuse=~/td", "scenes living_room --plan=~/td"}) {
+    ExpectRefusal(arguments, {std::string(arguments).find("/../") == std::string::npos
+                                  ? says
+                                  : "must be $HOME/td/../x"});
+  }
+}
+
 }  // namespace
 }  // namespace depthgrid
