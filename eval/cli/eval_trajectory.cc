@@ -83,13 +83,7 @@ std::string UnitsText(const TrajectoryFiles& files) {
 // Warnings about errors that may be misleading.
 std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vector<PosePair>& pairs,
                                   const TrajectoryFiles& files, const EvalTrajectoryArguments& of) {
-  constexpr double kPercent = 100.0;
   constexpr double kFewShare = 0.5;  // more missing than present
-  constexpr double kMostMissing = 0.2;
-  constexpr double kLeastPathM = 1.0;  // with less, noise determines the tilt
-  // In level worlds planar errors are part of those in space, so not larger by this factor.
-  constexpr double kTilted = 2.0;
-  constexpr double kLeastErrorM = 0.01;  // alignment may remove any share of smaller ones
   std::vector<std::string> doubts;
   const int fewer = std::min(score.reference_poses, score.estimate_poses);
   if (!score.by_row && score.matched_poses == 1 && fewer == 1) {
@@ -103,18 +97,11 @@ std::vector<std::string> DoubtsOf(const TrajectoryScore& score, const std::vecto
                     of.estimate, score.matched_poses, score.estimate_poses,
                     score.matched_poses == 1 ? "has" : "have", of.reference, score.reference_poses,
                     UnitsText(files)));
-  } else if (score.time_coverage < 1.0 - kMostMissing) {
-    doubts.push_back(fmt::format("{}: covers {:.0f} % of {}'s time; the errors are of that alone",
-                                 of.estimate, kPercent * score.time_coverage, of.reference));
+  } else {
+    doubts = DoubtsOfTime(score, {of.reference, of.estimate});
   }
-  if (score.xy_se2 && score.xyz_se3 && score.reference_path_m > kLeastPathM &&
-      score.xy_se2->rmse > std::max(kLeastErrorM, kTilted * score.xyz_se3->rmse)) {
-    doubts.push_back(fmt::format(
-        "{}: fits {} to {:.3f} m in space (SE(3) aligned) but to {:.3f} m in the plane "
-        "(SE(2)): {}, so errors in xy say little",
-        of.estimate, of.reference, score.xyz_se3->rmse, score.xy_se2->rmse,
-        FitsUpsideDown(pairs) ? "it is upside down or mirrored (an axis negated, x and y swapped)"
-                              : "their worlds are tilted against each other"));
+  if (const auto doubt = DoubtOfPlane(score, pairs, {of.reference, of.estimate})) {
+    doubts.push_back(*doubt);
   }
   for (std::string& doubt : DoubtsOfPairs(pairs, {of.reference, of.estimate})) {
     doubts.push_back(std::move(doubt));

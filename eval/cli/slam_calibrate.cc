@@ -39,6 +39,11 @@ void SlamCalibrate(const SlamCalibrateArguments& arguments) {
   const SeedRange seeds = {arguments.first_seed, arguments.seeds};
   const DriftCalibration found =
       CalibrateDrift(world.trajectory, options.slam, arguments.target_m, seeds);
+  if (!found.reached && found.mean_error_m == 0.0) {
+    throw InputError("", fmt::format("slam.profile is {}, whose poses have no error to scale: "
+                                     "choose another with --set slam.profile=NAME",
+                                     ValueOf(options, "slam.profile")));
+  }
   if (!found.reached) {
     throw InputError("--target",
                      fmt::format("is {} m, but with drift_scale {} the error is {:.4f} m",

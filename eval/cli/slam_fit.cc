@@ -26,6 +26,17 @@ const std::vector<double>& Lags() {
   return lags_s;
 }
 
+// As `eval trajectory` does.
+void WarnOfPairs(const Trajectory& truth, const Trajectory& estimate,
+                 const std::vector<PosePair>& pairs, const TrajectoryNames& names) {
+  if (const auto score = ScoreTrajectory(truth, estimate, kMaxStampDifferenceS)) {
+    Warn(DoubtsOfTime(*score, names));
+    if (const auto doubt = DoubtOfPlane(*score, pairs, names)) Warn({*doubt});
+  }
+  Warn(DoubtsOfPairs(pairs, names));
+  Warn(DoubtsOfClock(truth, estimate, names));
+}
+
 SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path) {
   SlamRun run;
   std::vector<std::string> warnings;
@@ -40,9 +51,25 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
   if (run.truth.empty()) {
     throw InputError(estimate_path, SpansApart(truth, estimate, truth_path, kMaxStampDifferenceS));
   }
-  Warn(DoubtsOfPairs(pairs, {truth_path, estimate_path}));
-  Warn(DoubtsOfClock(truth, estimate, {truth_path, estimate_path}));
+  const TrajectoryNames names = {truth_path, estimate_path};
+  if (const auto units = OtherUnits(pairs, names)) {
+    throw InputError(estimate_path,
+                     fmt::format("seems to be in {}, both must be in metres", *units));
+  }
+  WarnOfPairs(truth, estimate, pairs, names);
   return run;
+}
+
+// What `run` would refuse of a fit.
+void RequireUsable(const SlamOptions& options, const std::string& place) {
+  SlamSettings read;
+  try {
+    Config::FromText(ToYaml(SlamSettings{options}), place).Read(read);
+  } catch (const InputError& error) {
+    throw InputError(place, fmt::format("its errors are larger than any setting can be: are truth "
+                                        "and estimate of the same run, both in metres? ({})",
+                                        error.what()));
+  }
 }
 
 // Warns of equal poses, as when a file is given twice.
@@ -155,6 +182,7 @@ void FitSlam(const SlamFitArguments& arguments) {
                                               : fmt::format("{}, the last of {}", files.back(),
                                                             Counted(runs.size(), "run"));
   SlamFit fit = FitSlamErrors(runs, place);
+  RequireUsable(fit.options, place);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     WarnOfSamePoses(runs[i], files[2 * i], files[2 * i + 1]);
   }

@@ -144,6 +144,54 @@ std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
   return doubts;
 }
 
+std::vector<std::string> DoubtsOfTime(const TrajectoryScore& score, const TrajectoryNames& names) {
+  constexpr double kPercent = 100.0;
+  constexpr double kMostMissing = 0.2;
+  if (score.time_coverage >= 1.0 - kMostMissing) return {};
+  return {fmt::format("{}: covers {:.0f} % of {}'s time; the errors are of that alone",
+                      names.estimate, kPercent * score.time_coverage, names.reference)};
+}
+
+std::optional<std::string> DoubtOfPlane(const TrajectoryScore& score,
+                                        const std::vector<PosePair>& pairs,
+                                        const TrajectoryNames& names) {
+  // In level worlds planar errors are part of those in space, so not larger by this factor.
+  constexpr double kTilted = 2.0;
+  constexpr double kLeastErrorM = 0.01;  // alignment may remove any share of smaller ones
+  if (!score.xy_se2 || !score.xyz_se3 || score.reference_path_m <= kLeastPathM ||
+      score.xy_se2->rmse <= std::max(kLeastErrorM, kTilted * score.xyz_se3->rmse)) {
+    return {};
+  }
+  return fmt::format(
+      "{}: fits {} to {:.3f} m in space (SE(3) aligned) but to {:.3f} m in the plane (SE(2)): {}, "
+      "so errors in xy say little",
+      names.estimate, names.reference, score.xyz_se3->rmse, score.xy_se2->rmse,
+      FitsUpsideDown(pairs) ? "it is upside down or mirrored (an axis negated, x and y swapped)"
+                            : "their worlds are tilted against each other");
+}
+
+std::optional<std::string> OtherUnits(const std::vector<PosePair>& pairs,
+                                      const TrajectoryNames& names) {
+  constexpr double kNear = 1.2;  // SLAM's own error of scale is smaller
+  struct Unit {
+    const char* name;
+    double per_metre;
+  };
+  if (pairs.empty() || ReferencePath(pairs).back() <= kLeastPathM || StandsStill(pairs)) return {};
+  const auto fit = Align(pairs, Alignment::kSim3);
+  if (!fit || !(fit->scale > 0.0)) return {};
+  for (const Unit& unit : {Unit{"millimetres", 1000.0}, Unit{"centimetres", 100.0}}) {
+    const auto is_near = [](double ratio) { return ratio < kNear && ratio * kNear > 1.0; };
+    if (is_near(fit->scale * unit.per_metre)) {
+      return fmt::format("{} where {} is in metres", unit.name, names.reference);
+    }
+    if (is_near(fit->scale / unit.per_metre)) {
+      return fmt::format("metres where {} is in {}", names.reference, unit.name);
+    }
+  }
+  return {};
+}
+
 std::vector<std::string> DoubtsOfClock(const Trajectory& reference, const Trajectory& estimate,
                                        const TrajectoryNames& names, double added_s) {
   const auto clock = FindClockOffset(reference, estimate);

@@ -2,10 +2,12 @@
 // each.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "eval/metrics/association.h"
+#include "eval/metrics/trajectory_metrics.h"
 
 namespace depthgrid {
 
@@ -24,6 +26,17 @@ std::string SpansApart(const Trajectory& reference, const Trajectory& estimate,
 // or another order of quaternions than the reference.
 std::vector<std::string> DoubtsOfPairs(const std::vector<PosePair>& pairs,
                                        const TrajectoryNames& names);
+// Warns of an estimate that covers only a part of the reference's time.
+std::vector<std::string> DoubtsOfTime(const TrajectoryScore& score, const TrajectoryNames& names);
+// Warns of an estimate that fits the reference in space but not in the plane.
+std::optional<std::string> DoubtOfPlane(const TrajectoryScore& score,
+                                        const std::vector<PosePair>& pairs,
+                                        const TrajectoryNames& names);
+// The units of an estimate that fits the reference a thousand or a hundred times as large or as
+// small: "millimetres where truth.txt is in metres". Empty for other scales, and where the
+// reference hardly moves.
+std::optional<std::string> OtherUnits(const std::vector<PosePair>& pairs,
+                                      const TrajectoryNames& names);
 // Warns of stamps from another clock or poses of another point of the robot, whichever fits better.
 // `added_s` has already been added to the estimate's stamps.
 std::vector<std::string> DoubtsOfClock(const Trajectory& reference, const Trajectory& estimate,

@@ -198,6 +198,51 @@ TEST_F(SlamCommands, FitRefusesBadInput) {
                             truth_path, truth.front().stamp_s, truth.back().stamp_s));
 }
 
+// A path with turns, so that its scale is determined, in units of which `metre` make one metre.
+std::string TurningPath(double metre, int frames, double bend) {
+  std::string text;
+  for (int i = 0; i < frames; ++i) {
+    const double t_s = i / 30.0;
+    const double x_m = 0.3 * t_s, y_m = bend * std::sin(0.5 * t_s);
+    const double z_m = 1.0 + 0.3 * std::sin(0.9 * t_s);
+    text += fmt::format("{:.6f} {} {} {} -0.5 0.5 -0.5 0.5\n", t_s, metre * x_m, metre * y_m,
+                        metre * z_m);
+  }
+  return text;
+}
+
+TEST_F(SlamCommands, FitRefusesOtherUnits) {
+  Write("m.txt", TurningPath(1.0, 600, 1.0));
+  Write("mm.txt", TurningPath(1000.0, 600, 1.0));
+  Write("cm.txt", TurningPath(100.0, 600, 1.0));
+  ExpectRefusal("slam-fit m.txt mm.txt",
+                "mm.txt: seems to be in millimetres where m.txt is in metres, both must be in "
+                "metres\n");
+  ExpectRefusal("slam-fit cm.txt m.txt", "m.txt: seems to be in metres where cm.txt is in cent");
+  Write("wild.txt", TurningPath(30.0, 600, 3.0));
+  Write("odd.txt", TurningPath(3000.0, 600, -3.0));
+  ExpectRefusal("slam-fit wild.txt odd.txt", "");
+}
+
+TEST_F(SlamCommands, FitWarnsAsEvalTrajectoryDoes) {
+  Write("truth.txt", TurningPath(1.0, 900, 1.0));
+  Write("part.txt", TurningPath(1.0, 300, 1.0));
+  const std::string says = "warning: part.txt: covers 33 % of truth.txt's time";
+  EXPECT_THAT(Program("eval trajectory truth.txt part.txt").err, HasSubstr(says));
+  EXPECT_THAT(Program("slam-fit truth.txt part.txt").err, HasSubstr(says));
+  // Another room's path, whose height varies as the truth's way across does.
+  std::string tilted;
+  for (int i = 0; i < 900; ++i) {
+    const double t_s = i / 30.0;
+    tilted += fmt::format("{:.6f} {} {} {} -0.5 0.5 -0.5 0.5\n", t_s, 0.3 * t_s,
+                          -0.3 * std::sin(0.9 * t_s), 1.0 + std::sin(0.5 * t_s));
+  }
+  Write("tilted.txt", tilted);
+  const std::string plane = "their worlds are tilted against each other";
+  EXPECT_THAT(Program("eval trajectory truth.txt tilted.txt").err, HasSubstr(plane));
+  EXPECT_THAT(Program("slam-fit truth.txt tilted.txt").err, HasSubstr(plane));
+}
+
 TEST_F(SlamCommands, CalibrateReachesItsTarget) {
   const std::string command =
       "slam-calibrate ./small.yaml --set frames=90 --set slam.loops.scenario=none --seeds 20 ";
@@ -229,7 +274,8 @@ TEST_F(SlamCommands, CalibrateRefusesBadInput) {
                 "--set slam.drift_scale=3: is what this command finds");
   // Nothing to scale.
   ExpectRefusal("slam-calibrate ./small.yaml --set slam.profile=ground_truth --target 0.1",
-                "--target");
+                "depthgrid: slam.profile is ground_truth, whose poses have no error to scale: "
+                "choose another with --set slam.profile=NAME\n");
 }
 
 }  // namespace
