@@ -73,7 +73,9 @@ std::string DepthSeen(const MappingRun& run) {
 
 std::string ImagesOf(const MappingRun& run) {
   const PinholeCamera& camera = *run.camera;
-  const double width_rad = 2.0 * std::atan(0.5 * camera.width_px / camera.fx_px);
+  // Between the outer edges of the first and the last column, wherever the principal point is.
+  const double width_rad = std::atan((camera.width_px - 0.5 - camera.cx_px) / camera.fx_px) -
+                           std::atan((-0.5 - camera.cx_px) / camera.fx_px);
   return fmt::format("the images, {}x{} pixels and {:.3g} degrees wide, {}", camera.width_px,
                      camera.height_px, DegFromRad(width_rad), DepthSeen(run));
 }

@@ -38,6 +38,19 @@ TEST_F(ProgramView, AnEmptyMapIsSaidWithItsCause) {
   EXPECT_EQ(said("map seq"), "");
 }
 
+// The angle from edge to edge: 2 atan(40 / 60) about the centre, little far beside it.
+TEST_F(ProgramView, TheImagesWidthIsThatOfTheirEdges) {
+  const auto said = [&](const std::string& camera) {
+    return Program("run ./small.yaml -o out --force --set sensor.max_range_m=0.1 "
+                   "--set sensor.fx=60 --set sensor.fy=60" +
+                   camera)
+        .err;
+  };
+  EXPECT_THAT(said(""), HasSubstr("80x60 pixels and 67.4 degrees wide"));
+  EXPECT_THAT(said(" --set sensor.cx=400 --set sensor.cy=30"),
+              HasSubstr("80x60 pixels and 2.08 degrees wide"));
+}
+
 TEST_F(ProgramView, AMapOfACameraAtAnotherHeightIsWarnedOf) {
   const auto said = [&](const std::string& heights) {
     Write("first/frames.csv", heights);
