@@ -25,6 +25,7 @@
 #include "eval/sweep/sweep_reuse.h"
 #include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
+#include "mapper/core/usable_threads.h"
 #include "mapper/io/end_task.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
@@ -73,7 +74,7 @@ void Announce(const SweepPlan& plan, const WorkHere& work, const SweepContext& c
   const SweepEstimate estimate = EstimateSweep(plan, runs, context);
   if (estimate.cpu_s > 0.0) {
     fmt::print("about {} with {} at a time, {} of scans\n",
-               DurationText(estimate.cpu_s / context.threads), context.threads,
+               DurationText(estimate.cpu_s / UsableThreads(context.threads)), context.threads,
                Counted(estimate.scan_sets, "different set"));
   } else {
     fmt::print("the first points fail: {}\n", estimate.failure);

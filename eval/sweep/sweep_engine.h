@@ -26,7 +26,7 @@ struct SweepContext {
 std::vector<std::string> DoRuns(const SweepPlan& plan, SweepDatabase& database,
                                 const SweepContext& context);
 
-// Estimate of the runs' duration, from a few frames of the first one.
+// Estimate of the runs' duration, from a few frames of some of them and the frames of each.
 struct SweepEstimate {
   double cpu_s = 0.0;   // 0 when every run tried failed
   std::string failure;  // of the first run tried

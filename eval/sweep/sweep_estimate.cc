@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <optional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -11,6 +11,7 @@
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
+#include "mapper/io/number_rows.h"
 
 namespace depthgrid {
 namespace {
@@ -21,13 +22,21 @@ constexpr std::size_t kShortFrames = 24;
 constexpr std::size_t kLongFrames = 60;
 // Give up when this many points have failed.
 constexpr std::size_t kMostTries = 8;
+// Kinds of runs (KindOf) that are timed; the others take the times of the most similar one.
+constexpr std::size_t kMostPilots = 4;
 
 // CPU seconds of parts of a run.
 struct PilotTimes {
-  std::size_t frames = 0;  // of the whole run
-  double image_s = 0.0;    // per frame, once for all groups that share their images
-  double scan_s = 0.0;     // per frame, once for all runs of a group
-  double run_s = 0.0;      // mapping and scores of all frames
+  double image_s = 0.0;  // per frame, once for all groups that share their images
+  double scan_s = 0.0;   // per frame, once for all runs of a group
+  double few_s = 0.0;    // mapping and scores of a run of `few_frames`
+  double frame_s = 0.0;  // and of each frame beyond these
+  double few_frames = 1.0;
+
+  double RunOf(double frames) const {
+    return frames < few_frames ? few_s * frames / few_frames
+                               : few_s + frame_s * (frames - few_frames);
+  }
 };
 
 // CPU seconds of a run that ends after `frames` frames.
@@ -47,8 +56,7 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   ScanSet set = MakeSet(options, inputs.WorldOf(options));
   const auto truth = inputs.TruthOf(set.options);
   PilotTimes times;
-  times.frames = set.slam.live.size();
-  const std::size_t pilot = std::min(times.frames, kLongFrames);
+  const std::size_t pilot = std::min(set.slam.live.size(), kLongFrames);
   set.slam.live.resize(pilot);
   set.scans.resize(pilot);
   const SyntheticSensor sensor(*set.world, set.options, context.cache_folder);
@@ -67,60 +75,142 @@ PilotTimes TimesOfFirstFrames(const ExperimentOptions& options, const SweepConte
   times.scan_s = (ProcessCpuS() - before_s) / static_cast<double>(pilot) - times.image_s;
   const std::size_t few = std::min(pilot, kShortFrames);
   RunS(set, few, *truth);  // warm-up: the first run also pays one-time costs
-  const double few_s = RunS(set, few, *truth);
-  times.run_s = few_s;
+  times.few_s = RunS(set, few, *truth);
+  times.few_frames = static_cast<double>(few);
   if (pilot > few) {
-    const double a_frame_s =
-        std::max(0.0, RunS(set, pilot, *truth) - few_s) / static_cast<double>(pilot - few);
-    times.run_s += a_frame_s * static_cast<double>(times.frames - few);
+    times.frame_s =
+        std::max(0.0, RunS(set, pilot, *truth) - times.few_s) / static_cast<double>(pilot - few);
   }
   return times;
 }
 
-// Number of sets of depth images that the runs use: settings of the mapper and of SLAM do not
-// affect them.
-int CountImageSets(const SweepPlan& plan, const std::vector<int>& runs) {
-  std::set<std::vector<std::string>> sets;
-  for (const int run : runs) {
-    std::vector<std::string> seen;
-    for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
-      const std::string& key = plan.parameter_keys[i];
-      const bool is_seen = !key.starts_with("mapper.") && !key.starts_with("slam.") &&
-                           !key.starts_with("metrics.") && key != "slam_seed";
-      if (is_seen) seen.push_back(plan.runs[static_cast<std::size_t>(run)].values[i]);
-    }
-    sets.insert(std::move(seen));
+// The values that a run's depth images depend on: settings of the mapper and of SLAM do not affect
+// them.
+std::vector<std::string> ImageKey(const SweepPlan& plan, const PlannedRun& run) {
+  std::vector<std::string> seen;
+  for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
+    const std::string& key = plan.parameter_keys[i];
+    const bool is_seen = !key.starts_with("mapper.") && !key.starts_with("slam.") &&
+                         !key.starts_with("metrics.") && key != "slam_seed";
+    if (is_seen) seen.push_back(run.values[i]);
   }
-  return static_cast<int>(sets.size());
+  return seen;
 }
 
-// Of the first run that does not fail; earlier ones report their failures when they are run.
-struct Pilot {
-  std::optional<PilotTimes> times;
-  std::string failure;  // of the first run tried that failed
+// Runs of one kind take about as long for a frame: they have the same value on each axis except
+// seeds and frames, where numbers of SLAM and of the fusion count as equal unless one is 0 (which
+// may switch something off: a gain of 0 costs a third).
+std::vector<std::string> KindOf(const SweepPlan& plan, const PlannedRun& run) {
+  std::vector<std::string> kind;
+  for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
+    const std::string& key = plan.parameter_keys[i];
+    if (IsSeedKey(key) || key == "frames") continue;
+    const auto number = ParseNumber(run.values[i]);
+    const bool any =
+        number && *number != 0.0 && (key.starts_with("slam.") || key.starts_with("mapper.fusion."));
+    kind.push_back(any ? "any" : run.values[i]);
+  }
+  return kind;
+}
+
+std::size_t EqualValues(const std::vector<std::string>& a, const std::vector<std::string>& b) {
+  std::size_t equal = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) equal += a[i] == b[i] ? 1 : 0;
+  return equal;
+}
+
+// Number of frames of each run; its own path's where it does not say.
+class FrameCounts {
+ public:
+  FrameCounts(const SweepPlan& plan, const SweepContext& context)
+      : plan_(plan), inputs_(context.threads) {}
+
+  double Of(const PlannedRun& run) {
+    const auto [entry, is_new] = known_.emplace(ImageKey(plan_, run), 0.0);
+    if (is_new) entry->second = Count(run);
+    return entry->second;
+  }
+
+ private:
+  double Count(const PlannedRun& run) {
+    try {
+      const ExperimentOptions options = plan_.OptionsOf(run);
+      return options.frames > 0 ? options.frames
+                                : static_cast<double>(inputs_.WorldOf(options)->trajectory.size());
+    } catch (const InputError&) {  // it fails at once
+      return 0.0;
+    }
+  }
+
+  const SweepPlan& plan_;
+  SweepInputs inputs_;
+  std::map<std::vector<std::string>, double> known_;
 };
 
-Pilot PilotOf(const SweepPlan& plan, const std::vector<int>& runs, const SweepContext& context) {
-  Pilot pilot;
-  std::set<int> tried;  // points
+// Times of some kinds of runs.
+struct Pilots {
+  std::map<std::vector<std::string>, PilotTimes> times;
+  std::string failure;  // of the first run tried that failed
+
+  // Those of the most similar kind.
+  const PilotTimes& For(const std::vector<std::string>& kind) const {
+    const auto best =
+        std::max_element(times.begin(), times.end(), [&](const auto& a, const auto& b) {
+          return EqualValues(a.first, kind) < EqualValues(b.first, kind);
+        });
+    return best->second;
+  }
+};
+
+// The longest run of each kind. Kinds in the order of their first runs.
+std::vector<const PlannedRun*> LongestRuns(const SweepPlan& plan, const std::vector<int>& runs,
+                                           FrameCounts& frames) {
+  std::vector<const PlannedRun*> longest;
+  std::map<std::vector<std::string>, std::size_t> known;
   for (const int run : runs) {
     const PlannedRun& planned = plan.runs[static_cast<std::size_t>(run)];
-    if (!tried.insert(planned.point).second) continue;
-    if (tried.size() > kMostTries) break;
+    const auto [entry, is_new] = known.emplace(KindOf(plan, planned), longest.size());
+    if (is_new) longest.push_back(&planned);
+    const PlannedRun*& best = longest[entry->second];
+    if (frames.Of(planned) > frames.Of(*best)) best = &planned;
+  }
+  return longest;
+}
+
+// Of runs that do not fail; others report their failures when they are run.
+Pilots PilotsOf(const SweepPlan& plan, const std::vector<const PlannedRun*>& candidates,
+                const SweepContext& context) {
+  Pilots pilots;
+  std::size_t failed = 0;
+  for (const PlannedRun* run : candidates) {
+    if (pilots.times.size() == kMostPilots || failed == kMostTries) break;
     try {
       NamingPlaces(plan.PlaceOfKey(), [&] {
-        const ExperimentOptions options = plan.OptionsOf(planned);
+        const ExperimentOptions options = plan.OptionsOf(*run);
         RequireSound(options, plan.PlaceOfKey());
-        pilot.times = TimesOfFirstFrames(options, context);
+        pilots.times.emplace(KindOf(plan, *run), TimesOfFirstFrames(options, context));
       });
-      return pilot;
     } catch (const DiskFullError&) {
       throw;
     } catch (const std::exception& error) {
-      if (pilot.failure.empty()) pilot.failure = error.what();
+      ++failed;
+      if (pilots.failure.empty()) pilots.failure = error.what();
     }
   }
-  return pilot;
+  return pilots;
+}
+
+// Evenly spread ones first, so that the timed kinds differ in as much as possible.
+std::vector<const PlannedRun*> Spread(const std::vector<const PlannedRun*>& runs) {
+  std::vector<const PlannedRun*> spread;
+  std::vector<bool> taken(runs.size(), false);
+  const auto take = [&](std::size_t i) {
+    if (!taken[i]) spread.push_back(runs[i]);
+    taken[i] = true;
+  };
+  for (std::size_t k = 0; k < kMostPilots; ++k) take(k * (runs.size() - 1) / (kMostPilots - 1));
+  for (std::size_t i = 0; i < runs.size(); ++i) take(i);
+  return spread;
 }
 
 }  // namespace
@@ -130,17 +220,22 @@ SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,
   SweepEstimate estimate;
   if (runs.empty()) return estimate;
   const std::vector<int> groups = ScanGroups(plan);
-  std::set<int> used;
-  for (const int run : runs) used.insert(groups[static_cast<std::size_t>(run)]);
-  estimate.scan_sets = static_cast<int>(used.size());
-  const Pilot pilot = PilotOf(plan, runs, context);
-  estimate.failure = pilot.failure;
-  if (const auto& times = pilot.times) {
-    const auto frames = static_cast<double>(times->frames);
-    estimate.cpu_s = CountImageSets(plan, runs) * frames * times->image_s +
-                     estimate.scan_sets * frames * times->scan_s +
-                     static_cast<double>(runs.size()) * times->run_s;
+  FrameCounts frames(plan, context);
+  const Pilots pilots = PilotsOf(plan, Spread(LongestRuns(plan, runs, frames)), context);
+  estimate.failure = pilots.failure;
+  std::set<int> scans;
+  std::set<std::vector<std::string>> images;
+  for (const int run : runs) {
+    const PlannedRun& planned = plan.runs[static_cast<std::size_t>(run)];
+    const bool new_scans = scans.insert(groups[static_cast<std::size_t>(run)]).second;
+    const bool new_images = images.insert(ImageKey(plan, planned)).second;
+    if (pilots.times.empty()) continue;
+    const PilotTimes& times = pilots.For(KindOf(plan, planned));
+    const double count = frames.Of(planned);
+    estimate.cpu_s += times.RunOf(count) + (new_scans ? count * times.scan_s : 0.0) +
+                      (new_images ? count * times.image_s : 0.0);
   }
+  estimate.scan_sets = static_cast<int>(scans.size());
   return estimate;
 }
 
