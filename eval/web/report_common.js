@@ -149,6 +149,22 @@ function seriesOf(s) {
   };
 }
 
+// How far a series with whiskers is moved sideways, so that those of several can be told apart; CSS pixels.
+const asideOf = (series, k) => (series[k].low ? (k - (series.length - 1) / 2) * 3 : 0);
+
+// Moves what uPlot draws of the series.
+function movedAside(options, aside) {
+  if (!aside) return options;
+  const moved = (paths) => (u, k, from, to) => {
+    const drawn = paths(u, k, from, to);
+    if (!drawn?.stroke) return drawn;
+    const by = new DOMMatrix().translate(aside * devicePixelRatio, 0);
+    const move = (path) => { if (!(path instanceof Path2D)) return path; const copy = new Path2D(); copy.addPath(path, by); return copy; };
+    return { ...drawn, stroke: move(drawn.stroke), fill: move(drawn.fill), clip: null };
+  };
+  return { ...options, paths: options.paths ?? moved(uPlot.paths.linear()), points: { ...options.points, paths: moved(uPlot.paths.points()) } };
+}
+
 // Points whose areas are proportional to their weights.
 function drawWeighted(u, series) {
   const MOST_RADIUS = 10;
@@ -166,7 +182,7 @@ function drawWeighted(u, series) {
   });
 }
 
-// Whiskers from low to high at every point of the series that have them, side by side.
+// Whiskers from low to high at every point of the series that have them, moved aside with it.
 function drawIntervals(u, series) {
   series.forEach((s, k) => {
     if (!s.low || !u.series[k + 1].show) return;
@@ -179,7 +195,7 @@ function drawIntervals(u, series) {
     u.ctx.beginPath();
     u.data[0].forEach((x, i) => {
       if (!isNumber(s.low[i]) || !isNumber(s.high[i])) return;
-      const px = u.valToPos(x, "x", true) + (k - (series.length - 1) / 2) * 2 * devicePixelRatio;
+      const px = u.valToPos(x, "x", true) + asideOf(series, k) * devicePixelRatio;
       const [low, high] = [u.valToPos(s.low[i], "y", true), u.valToPos(s.high[i], "y", true)];
       const cap = 3 * devicePixelRatio;
       u.ctx.moveTo(px, low); u.ctx.lineTo(px, high);
@@ -265,13 +281,13 @@ const logLabels = (u, ticks) => ticks.map((v) => (v === null ? null : compact(v)
 
 // A plot with its own title and legend. `series`: {label, values, colour (a CSS variable), dash, digits, unit,
 // points, weights (of points; weighedBy: what they are), notes (behind the values), low, high (ends of intervals)}.
-// Lines stop where a value is null. Plots of one `sync` key share their cursor. `caption`: what a file says besides the
-// title. `xNames` replaces the numbers of the x axis, one a value of x. `leastY`: where an axis of `logY` begins.
+// Lines stop where a value is null. Plots of one `sync` key share their cursor. `caption` and `note`: what a picture's file
+// says besides the title. `columns`: further ones of a CSV, [name, values]. `xNames` replaces the numbers of the x axis, one a value of x. `leastY`: where an axis of `logY` begins.
 // `withinY`: the ends beyond which a y axis does not go.
 // Keys: left and right move the cursor, + and - zoom, 0 shows everything.
-function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY, leastY, withinY }) {
+function drawPlot(container, { title, caption, note, columns, x, xLabel, yLabel, series, height = 190, sync, onCursor, xNames, logX, logY, leastY, withinY }) {
   const help = `${title}. Arrow keys move the cursor, plus and minus zoom, 0 shows everything.`;
-  const save = saveButtons(title, { ...pictureKinds(() => plotSvg(plot, options, caption ? `${title} (${caption})` : title, series, xLabel, yLabel)), CSV: () => csvOfPlot(x, series, xLabel, xNames) });
+  const save = saveButtons(title, { ...pictureKinds(() => plotSvg(plot, options, `${title}${caption ? ` (${caption})` : ""}${note ? `. ${note}` : ""}`, series, xLabel, yLabel)), CSV: () => csvOfPlot(x, series, xLabel, xNames, columns) });
   const box = make("div", { class: "plot", tabindex: "0", role: "group", "aria-label": help }, make("h3", {}, title, save));
   container.append(box);
   let plot = null;
@@ -296,7 +312,7 @@ function drawPlot(container, { title, caption, x, xLabel, yLabel, series, height
           ...(logX ? { splits: (u, k, low, high) => logTicks(x, low, high), values: logLabels, filter: (u, ticks) => ticks } : xNames ? {} : { values: linearLabels }) },
         { ...axis, label: yLabel, labelSize: yLabel ? 18 : 0, labelGap: 2, values: logY ? logLabels : linearLabels,
           size: (u, labels) => Math.max(52, 17 + TEXT_WIDTH * Math.max(0, ...(labels ?? []).map((text) => text?.length ?? 0))) }],
-      series: [{ label: xLabel, value: (u, v) => (xNames ? xNames[x.indexOf(v)] ?? "–" : compact(v)) }, ...series.map(seriesOf)],
+      series: [{ label: xLabel, value: (u, v) => (xNames ? xNames[x.indexOf(v)] ?? "–" : compact(v)) }, ...series.map((s, k) => movedAside(seriesOf(s), asideOf(series, k)))],
       hooks: {
         setCursor: onCursor ? [(u) => { if (!quiet && u.cursor.event && u.cursor.idx != null) { shown = u.cursor.idx; onCursor(shown); } }] : [],
         draw: [(u) => { drawIntervals(u, series); drawWeighted(u, series); }],

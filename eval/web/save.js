@@ -142,7 +142,7 @@ function tracedPlot(u, series, xLabel, yLabel) {
     ...labelled(u.axes[0]).flatMap(([x, words]) => [svg("line", { x1: px(x), x2: px(x), y1: top, y2: bottom + 4, stroke: colour("grid") }), text(px(x), bottom + 17, "middle", words)]),
     ...labelled(u.axes[1]).flatMap(([y, words]) => [svg("line", { x1: left - 4, x2: right, y1: py(y), y2: py(y), stroke: colour("grid") }), text(left - 8, py(y) + 4, "end", words)])];
   const clip = svg("clipPath", { id: "plot" }, svg("rect", { x: left - 6, y: top - 6, width: width + 12, height: height + 12 }));
-  const lines = svg("g", { "clip-path": "url(#plot)" }, ...series.flatMap((s, k) => (u.series[k + 1].show ? seriesSvg(u.data[0], s, px, py, (k - (series.length - 1) / 2) * 2) : [])));
+  const lines = svg("g", { "clip-path": "url(#plot)" }, ...series.flatMap((s, k) => (u.series[k + 1].show ? seriesSvg(u.data[0], s, px, py, asideOf(series, k)) : [])));
   const legend = legendOf(series.filter((s, k) => u.series[k + 1].show).map(legendEntry), bottom + 42);
   const parts = [svg("defs", {}, clip), ...grid, svg("path", { d: `M${left},${top}V${bottom}H${right}`, fill: "none", stroke: INK }), lines,
     text((left + right) / 2, bottom + 36, "middle", xLabel), text(0, 0, "middle", yLabel ?? "", { transform: `translate(13,${(top + bottom) / 2}) rotate(-90)` }), ...legend.elements];
@@ -155,8 +155,9 @@ function legendEntry(s) {
   return { label: s.label, stroke: colour(s.colour), dash: s.dash, mark: s.onlyPoints ? dot : undefined };
 }
 
-// Line, dots and whiskers; whiskers are shifted sideways as on the page.
-function seriesSvg(x, s, px, py, aside) {
+// Line, dots and whiskers, moved `aside` as on the page.
+function seriesSvg(x, s, pxOf, py, aside) {
+  const px = (value) => Number((pxOf(value) + aside).toFixed(2));
   const stroke = colour(s.colour);
   const known = [...x.keys()].filter((i) => isNumber(x[i]) && isNumber(s.values[i]));
   const parts = [];
@@ -168,15 +169,15 @@ function seriesSvg(x, s, px, py, aside) {
   if (s.points) for (const i of known) parts.push(svg("circle", { cx: px(x[i]), cy: py(s.values[i]), r: most ? Math.max(1.5, 10 * Math.sqrt(s.weights[i] / most)) : 3, fill: stroke }));
   for (const i of s.low ? known : []) {
     if (!isNumber(s.low[i]) || !isNumber(s.high[i])) continue;
-    const [at, low, high] = [px(x[i]) + aside, py(s.low[i]), py(s.high[i])];
+    const [at, low, high] = [px(x[i]), py(s.low[i]), py(s.high[i])];
     parts.push(svg("path", { d: `M${at},${low}V${high}M${at - 3},${low}h6M${at - 3},${high}h6`, fill: "none", stroke, "stroke-width": 1.5 }));
   }
   return parts;
 }
 
-// Columns for each series: its values, the ends of its intervals, and its weights.
-function csvOfPlot(x, series, xLabel, xNames) {
+// After x and `more` columns those of each series: its values, the ends of its intervals, and its weights.
+function csvOfPlot(x, series, xLabel, xNames, more = []) {
   const inUnit = (s, words) => `${s.label}${words}${s.unit ? ` (${s.unit})` : ""}`;
-  const columns = series.flatMap((s) => [[inUnit(s, ""), s.values], ...(s.low ? [[inUnit(s, ", 95 % low"), s.low], [inUnit(s, ", 95 % high"), s.high]] : []), ...(s.weights ? [[s.weighedBy, s.weights]] : [])]);
+  const columns = [...more, ...series.flatMap((s) => [[inUnit(s, ""), s.values], ...(s.low ? [[inUnit(s, ", 95 % low"), s.low], [inUnit(s, ", 95 % high"), s.high]] : []), ...(s.weights ? [[s.weighedBy, s.weights]] : [])])];
   return csvText([[xLabel, ...columns.map(([name]) => name)], ...[...x.keys()].map((i) => [xNames ? xNames[x.indexOf(x[i])] : x[i], ...columns.map(([, values]) => values[i])])]);
 }

@@ -15,9 +15,12 @@ const POINTS = SWEEP.points;
 // What an oracle chooses the best value for: of crossed seeds a run has one of each.
 const EACH = SWEEP.crossed_seeds ? "run" : "seed";
 
-// Metrics in the form shown.
+// Metrics in the form shown. Those of one quantity, such as an error before and after mapping, have one unit.
+const quantityOf = (score) => score.split(".").at(-1);
+const VALUES_OF = new Map();
+for (const { score, mean } of SWEEP.metrics) VALUES_OF.set(quantityOf(score), [...(VALUES_OF.get(quantityOf(score)) ?? []), ...mean]);
 const METRICS = SWEEP.metrics.map((metric) => {
-  const suited = suitedUnit(metric.score, metric.mean);
+  const suited = suitedUnit(metric.score, VALUES_OF.get(quantityOf(metric.score)));
   const label = metric.name.replace(metric.score, () => suited.label);  // a distance keeps its bars
   // What rounding leaves of nothing, such as 4e-16 m of true poses, is shown as 0.
   const shown = (v) => (Math.abs(v) < 1e-12 ? 0 : v * suited.factor);
@@ -92,7 +95,13 @@ function holders(prefix, held, free, redraw) {
     return select(AXES[i].key, `${prefix}-held-${i}`, options, held[i], (value) => { held[i] = Number(value); redraw(); });
   });
 }
-const heldTexts = (held, free) => free.filter((i) => held[i] !== -1).map((i) => `${shortKey(AXES[i].key)} ${AXES[i].labels[held[i]]}`);
+const anyOf = (held, free) => free.filter((i) => held[i] === -1);
+// ", at gain 0.5, over all 3 values of movers": what a figure's title says of the axes that it does not show.
+function heldTitle(held, free) {
+  const at = free.filter((i) => held[i] !== -1).map((i) => `${shortKey(AXES[i].key)} ${AXES[i].labels[held[i]]}`);
+  const any = anyOf(held, free).map((i) => `all ${AXES[i].texts.length} values of ${AXES[i].key}`);
+  return `${at.length ? `, at ${at.join(", ")}` : ""}${any.length ? `, over ${any.join(" and ")}` : ""}`;
+}
 const fits = (values, held, free) => free.every((i) => held[i] === -1 || values[i] === held[i]);
 
 // The lines of the grid along an axis, as in the statistics: those with a best value, or else all.

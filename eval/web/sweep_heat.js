@@ -89,21 +89,21 @@ function heatPainting(cells, best, width, inFile) {
       context.fillRect(u(c), v(r), Math.ceil(w), Math.ceil(h));
       if (!cell) crossOut(context, u(c), v(r), w, h);
     }));
-    // Marks stand over their column's value, and so in the middle; numbers give way to them.
+    // Marks stand in the middle of their cells; numbers give way to them.
+    const marks = markSegments(best, (c) => u(c) + w / 2, (r) => v(r) + h / 2);
     drawBestMarks(context, best, (c) => u(c) + w / 2, (r) => v(r) + h / 2);
     cells.forEach((column, c) => column.forEach((cell, r) => {
       if (!cell || w < 44 || h < 16) return;
       const [red, green, blue] = shade(cell.mean);
       const text = String(rounded(cell.mean, 3));
-      const beside = 6 + TEXT_WIDTH * text.length + 8 <= w / 2;
-      if (!beside && h < 30 && best[c]?.row === r) return;
-      const place = [u(c) + (beside ? 6 : w / 2), !beside && h >= 30 ? v(r) + 12 : v(r) + h / 2 + 4];
-      context.textAlign = beside ? "left" : "center";
+      const place = numberPlaces(text, u(c), v(r), w, h).find((one) => !marks.some((mark) => crosses(mark, one.box)));
+      if (!place) return;
+      context.textAlign = place.align;
       context.strokeStyle = rgb([red, green, blue]);
       context.lineWidth = 4;
-      context.strokeText(text, ...place);
+      context.strokeText(text, place.x, place.y);
       context.fillStyle = 0.3 * red + 0.6 * green + 0.1 * blue > 120 ? "#000" : "#fff";
-      context.fillText(text, ...place);
+      context.fillText(text, place.x, place.y);
     }));
     context.strokeStyle = colour("ink");
     context.lineWidth = 2;
@@ -140,8 +140,7 @@ function heatSvg(cells, best, free) {
     const { height, paint } = heatPainting(cells, best, FIGURE_WIDTH, true);
     const context = new SvgContext();
     paint(context);
-    const held = heldTexts(heat.held, free);
-    return titledFigure(`${heatTitle(metricLabel())}${held.length ? `, at ${held.join(", ")}` : ""}${SWEEP.of ? ` (${SWEEP.of})` : ""}.${heatKeyNote(best)}`, { height, parts: context.parts });
+    return titledFigure(`${heatTitle(metricLabel())}${heldTitle(heat.held, free)}${SWEEP.of ? ` (${SWEEP.of})` : ""}.${heatKeyNote(best)}`, { height, parts: context.parts });
   });
 }
 
@@ -192,6 +191,40 @@ function drawBestMarks(context, best, u, v) {
   });
 }
 
+// What is drawn of them, as straight pieces [x, y, x, y]; a dot as its two diameters.
+function markSegments(best, u, v) {
+  const DOT = 7;
+  const known = [...best.keys()].filter((c) => best[c]);
+  const dots = known.flatMap((c) => { const [x, y] = [u(c), v(best[c].row)]; return [[x - DOT, y, x + DOT, y], [x, y - DOT, x, y + DOT]]; });
+  const bars = known.filter((c) => isNumber(best[c].low)).map((c) => [u(c), v(best[c].low), u(c), v(best[c].high)]);
+  const line = AXES[heat.x].numeric ? known.slice(1).map((c, k) => [u(known[k]), v(best[known[k]].row), u(c), v(best[c].row)]) : [];
+  return [...dots, ...bars, ...line];
+}
+
+// Where a cell's number may stand, the usual place first: {x, y of its foot, align, box: its left, top, right, bottom}.
+function numberPlaces(text, left, top, w, h) {
+  const [MARGIN, GAP, ASCENT] = [6, 2, 9];
+  const length = TEXT_WIDTH * text.length;
+  const beside = MARGIN + length + 8 <= w / 2;
+  const heights = h < 30 ? [top + h / 2 + 4] : beside ? [top + h / 2 + 4, top + 12, top + h - 4] : [top + 12, top + h - 4];
+  const sides = beside ? [["left", left + MARGIN], ["right", left + w - MARGIN]] : [["center", left + w / 2]];
+  return sides.flatMap(([align, x]) => heights.map((y) => {
+    const from = align === "left" ? x : align === "right" ? x - length : x - length / 2;
+    return { x, y, align, box: [from - GAP, y - ASCENT - GAP, from + length + GAP, y + GAP] };
+  }));
+}
+
+// Whether a straight piece passes through a box: what the box's four sides leave of it (Liang and Barsky 1984).
+function crosses([x0, y0, x1, y1], [left, top, right, bottom]) {
+  let [from, to] = [0, 1];
+  for (const [step, room] of [[x0 - x1, x0 - left], [x1 - x0, right - x0], [y0 - y1, y0 - top], [y1 - y0, bottom - y0]]) {
+    if (step === 0 && room < 0) return false;
+    if (step < 0) from = Math.max(from, room / step);
+    if (step > 0) to = Math.min(to, room / step);
+  }
+  return from <= to;
+}
+
 // Minimum, median and maximum; `sorted` ascending.
 const heatKeyValues = (sorted) => [0, 0.5, 1].map((share) => sorted[Math.floor(share * (sorted.length - 1))] ?? 0);
 const heatKeyText = (value) => withUnit(rounded(value, 3));
@@ -226,15 +259,16 @@ function sayCell(cells, best) {
   const cell = cells[c]?.[r];
   const place = `${AXES[heat.x].key} ${HEAT_AXES[heat.x].labels[c]}, ${AXES[heat.y].key} ${HEAT_AXES[heat.y].labels[r]}: `;
   const value = !cell ? "no result" : cell.count > 1 ? `${withUnit(cell.mean)}, mean of ${cell.count} points` : `${withUnit(cell.mean)}${spreadOf(cell.point)}`;
+  const any = anyOf(heat.held, freeAxes([heat.x, heat.y])).length ? ` Means${heldTitle(heat.held, freeAxes([heat.x, heat.y]))}.` : "";
   const line = best[c] ? ` Best there: ${HEAT_AXES[heat.y].labels[best[c].row]}.` : "";
-  byId("heat-note").textContent = `${place}${value}.${line}${heatKeyNote(best)}`;
+  byId("heat-note").textContent = `${place}${value}.${line}${any}${heatKeyNote(best)}`;
 }
 
 function heatButtons(cells, best, free) {
   const rows = () => HEAT_AXES[heat.y].labels.map((label, r) => [label, ...cells.map((column) => column[r]?.mean)]);
   return saveButtons(heatTitle(metric.label), {
     ...pictureKinds(() => heatSvg(cells, best, free)),
-    CSV: () => csvText([[`${metricLabel()}: ${AXES[heat.y].key} down, ${AXES[heat.x].key} across`, ...HEAT_AXES[heat.x].labels], ...rows()]),
+    CSV: () => csvText([[`${metricLabel()}: ${AXES[heat.y].key} down, ${AXES[heat.x].key} across${heldTitle(heat.held, free)}`, ...HEAT_AXES[heat.x].labels], ...rows()]),
   });
 }
 

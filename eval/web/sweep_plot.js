@@ -54,7 +54,17 @@ function plotSeries(free) {
       colour: PALETTE[k], unit: metric.unit, points: true, onlyPoints: crowded || !axis.numeric || isScattered(value), spanGaps: true,
     };
   });
-  return { x, series };
+  // Where several points have one x, what else they differ in.
+  const columns = crowded ? anyOf(along.held, free).map((i) => [AXES[i].key, order.map((point) => AXES[i].labels[POINTS[point].values[i]])]) : [];
+  return { x, series, columns };
+}
+
+// What dots and whiskers are.
+function dotsNote(free) {
+  const seeds = largest(POINTS, (p) => p.counting);
+  const any = anyOf(along.held, free).map((i) => AXES[i].key);
+  return `Dots: mean over ${seeds > 1 ? `up to ${seeds} ${SWEEP.seed_keys.length > 1 ? "runs" : "seeds"}` : "one seed"}${any.length ? `, one for each value of ${any.join(" and ")}` : ""}.` +
+    (seeds > 1 ? ` Whiskers: bootstrap 95 % interval of the mean (${metric.resamples} resamples).` : "");
 }
 
 function drawAlong() {
@@ -77,17 +87,14 @@ function drawAlong() {
   if (positive) checkbox("plot-log", "logX", "logarithmic axis");
   if (positiveValues) checkbox("plot-log-values", "logY", "logarithmic values");
   keepFocus(byId("plot-controls"), controls);
-  const { x, series } = plotSeries(free);
-  const held = heldTexts(along.held, free);
+  const { x, series, columns } = plotSeries(free);
   drawPlot(byId("plot"), {
-    title: `${metric.label} along ${axis.key}${held.length ? `, at ${held.join(", ")}` : ""}`, caption: SWEEP.of, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
+    title: `${metric.label} along ${axis.key}${heldTitle(along.held, free)}`, caption: SWEEP.of, note: dotsNote(free), columns, x, xLabel: axis.key, yLabel: metric.unit || "value", series, height: 340,
     xNames: axis.numeric ? undefined : x.map((i) => axis.labels[i]), logX: positive && along.logX, logY: positiveValues && along.logY,
   });
-  const seeds = largest(POINTS, (p) => p.counting);
   const sum = (of) => POINTS.reduce((total, p) => total + of(p), 0);
   const repeats = sum((p) => p.runs - p.counting);
-  byId("plot-note").textContent = `Dots: mean over ${seeds > 1 ? `up to ${seeds} ${SWEEP.seed_keys.length > 1 ? "runs" : "seeds"}` : "one seed"}. ` +
-    (seeds > 1 ? `Whiskers: bootstrap 95 % interval of the mean (${metric.resamples} resamples). ` : "") +
+  byId("plot-note").textContent = `${dotsNote(free)} ` +
     (repeats ? `A seed with the same scores as another one, as where nothing is random, counts once: ${repeats} of ${sum((p) => p.runs)} runs are such repeats. ` : "") +
     (SWEEP.crossed_seeds ? `${SWEEP.seed_keys.join(" and ")} are crossed: a mean is as sure as one of ${SWEEP.crossed_seeds} seeds. ` : "") +
     (along.by >= 0 && AXES[along.by].texts.length > MOST_LINES ? `${MOST_LINES} of the ${AXES[along.by].texts.length} values of ${AXES[along.by].key} are shown.` : "");
