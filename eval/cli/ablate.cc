@@ -8,6 +8,7 @@
 #include "eval/cli/console.h"
 #include "eval/cli/experiment_argument.h"
 #include "eval/experiment/seed_range.h"
+#include "eval/experiment/shipped.h"
 #include "eval/study/ablation.h"
 #include "eval/study/ablation_report.h"
 #include "eval/sweep/sweep_cache.h"
@@ -94,7 +95,7 @@ void AblateNamed(const AblateArguments& arguments) {
   const std::vector<AblationRun> counted = WithoutRepeatedSeeds(runs);
   const std::size_t seeds = counted.size() / AblationVariants().size();
   const std::vector<ErrorShares> shares = SharesOf(counted);
-  const std::string json = AblationJson(shares, seeds);
+  const std::string json = AblationJson(shares, seeds, LoadNamedScene(plan.experiment.scene).name);
   WriteFile(folder.File("experiment.yaml"), ToYaml(plan.experiment));
   WriteFile(folder.File("ablation.csv"), AblationCsv(runs));
   WriteFile(folder.File("ablation.json"), json);

@@ -8,6 +8,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <sstream>
 
 #include "eval/compare/sweep_grid.h"
 #include "eval/experiment/changed_settings.h"
@@ -71,14 +72,35 @@ std::string SetText(const SweepResults& results, const std::string& key, const s
   return (fs::path(folder->second) / text).lexically_normal().string();
 }
 
+std::string TextOf(const SweepResults& results, const char* key) {
+  const auto found = results.environment.find(key);
+  return found != results.environment.end() ? found->second : "";
+}
+
+// The scenes' own names, by the values of their key (SceneNamesText).
+std::map<std::string, std::string> SceneNames(const SweepResults& results) {
+  std::map<std::string, std::string> names;
+  std::istringstream lines(TextOf(results, "scene_names"));
+  for (std::string line; std::getline(lines, line);) {
+    const auto equals = line.find(" = ");
+    if (equals != std::string::npos) names[line.substr(0, equals)] = line.substr(equals + 3);
+  }
+  return names;
+}
+
 Json AxesJson(const SweepResults& results, const SweepGrid& grid) {
   Json json = Json::array();
+  const std::map<std::string, std::string> scenes = SceneNames(results);
   for (const GridAxis& axis : grid.axes) {
     Json one = {{"key", axis.key}, {"numeric", axis.numeric}, {"texts", axis.texts}};
     for (const std::string& text : axis.texts) {
       one["set"].push_back(ShellWord(SetText(results, axis.key, text)));
     }
     if (axis.numeric) one["numbers"] = axis.numbers;
+    for (const std::string& text : axis.texts) {
+      const auto name = scenes.find(text);
+      if (axis.key == "scene") one["names"].push_back(name != scenes.end() ? name->second : "");
+    }
     json.push_back(one);
   }
   return json;
@@ -262,18 +284,15 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
   return json;
 }
 
-std::string TextOf(const SweepResults& results, const char* key) {
-  const auto found = results.environment.find(key);
-  return found != results.environment.end() ? found->second : "";
-}
-
 // The main settings common to all runs, for the page's head.
 std::string MeasuredBy(const SweepResults& results) {
   std::set<std::string> varied;
   for (const SweepParameter& parameter : results.parameters) varied.insert(parameter.key);
   const std::string experiment = TextOf(results, "experiment");
   if (experiment.empty()) return "";
-  return MeasuredSettings(Config::FromText(experiment, results.folder), varied);
+  const std::map<std::string, std::string> scenes = SceneNames(results);
+  return MeasuredSettings(Config::FromText(experiment, results.folder), varied,
+                          scenes.size() == 1 ? scenes.begin()->second : "");
 }
 
 // The experiment common to all runs: only the given keys, so that an axis over a preset

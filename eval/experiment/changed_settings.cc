@@ -165,10 +165,13 @@ std::string MainSettingsBut(const Config& run_yaml, const std::set<std::string>&
 
 std::string MainSettings(const Config& run_yaml) { return MainSettingsBut(run_yaml, {}); }
 
-std::string MeasuredSettings(const Config& experiment, const std::set<std::string>& varied) {
+std::string MeasuredSettings(const Config& experiment, const std::set<std::string>& varied,
+                             const std::string& scene_name) {
   std::vector<std::string> parts;
   const std::string scene = varied.contains("scene") ? "" : SettingOf(experiment, "scene");
-  if (!scene.empty()) parts.push_back(std::filesystem::path(scene).stem().string());
+  if (!scene.empty()) {
+    parts.push_back(scene_name.empty() ? std::filesystem::path(scene).stem().string() : scene_name);
+  }
   const std::string frames = varied.contains("frames") ? "" : SettingOf(experiment, "frames");
   if (!frames.empty() && frames != "0") parts.push_back(frames + " frames");  // 0: the whole path
   const std::string rest = MainSettingsBut(experiment, varied);

@@ -34,7 +34,8 @@ std::string PoseSourceOf(const Config& run_yaml);
 std::string MainSettings(const Config& run_yaml);
 
 // The settings common to runs of one experiment, without the varied keys: "living_room, 240 frames,
-// trajectory handheld, ...".
-std::string MeasuredSettings(const Config& experiment, const std::set<std::string>& varied);
+// trajectory handheld, ...". `scene_name`: the scene's own name; if empty, its file's.
+std::string MeasuredSettings(const Config& experiment, const std::set<std::string>& varied,
+                             const std::string& scene_name);
 
 }  // namespace depthgrid

@@ -77,6 +77,8 @@ std::vector<AblationRun> WithoutRepeatedSeeds(const std::vector<AblationRun>& ru
 std::vector<ErrorShares> SharesOf(const std::vector<AblationRun>& runs);
 
 std::string AblationCsv(const std::vector<AblationRun>& runs);
-std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t seeds);
+// `scene`: the room's name.
+std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t seeds,
+                         const std::string& scene);
 
 }  // namespace depthgrid

@@ -22,7 +22,7 @@ using Json = ReportJson;
 
 Json PageJson(const Json& ablation, const std::string& settings, const Config& config) {
   Json json;
-  json["of"] = MeasuredSettings(config, {"seed"});
+  json["of"] = MeasuredSettings(config, {"seed"}, ablation.value("scene", ""));
   json["changed"] = fmt::format("{}", fmt::join(ChangedSettings(config), ", "));
   json["seeds"] = ablation.at("seeds");
   json["scores"] = ablation.at("scores");
@@ -44,12 +44,13 @@ void WriteAblationReport(const std::string& folder, const ReportPlace& place) {
   const std::string path = folder + "/ablation.json";
   const std::string settings = ReadFile(folder + "/experiment.yaml");
   const Config config = Config::FromText(settings, folder + "/experiment.yaml");
-  const std::string scene = SettingOf(config, "scene");
   try {
-    const Json json = PageJson(Json::parse(ReadFile(path)), settings, config);
+    const Json ablation = Json::parse(ReadFile(path));
+    const std::string file = fs::path(SettingOf(config, "scene")).stem().string();
+    const std::string scene = ablation.value("scene", file);  // earlier versions have no name
     WriteFile(place.into + "/report.html",
-              FillPage("ablation.html", "Ablation of " + fs::path(scene).stem().string(),
-                       JsonText(json)));
+              FillPage("ablation.html", "Ablation of " + scene,
+                       JsonText(PageJson(ablation, settings, config))));
   } catch (const Json::exception&) {
     throw InputError(path, "is no ablation's result");
   }

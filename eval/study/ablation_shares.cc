@@ -143,8 +143,9 @@ std::string AblationCsv(const std::vector<AblationRun>& runs) {
   return csv;
 }
 
-std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t seeds) {
-  nlohmann::ordered_json json = {{"seeds", seeds}};
+std::string AblationJson(const std::vector<ErrorShares>& shares, std::size_t seeds,
+                         const std::string& scene) {
+  nlohmann::ordered_json json = {{"scene", scene}, {"seeds", seeds}};
   for (const ErrorShares& score : shares) {
     nlohmann::ordered_json& entry = json["scores"][score.metric];
     entry["error_is"] = score.is_complement ? "one less the score" : "the score";

@@ -29,30 +29,47 @@ constexpr std::size_t kMostPathPoints = 450;  // two per second of a 900-frame p
 struct CaseFiles {
   StudyCase head;
   RunFiles run;
-  std::string scene;  // the room; cases of the same room are shown side by side
+  std::string scene;       // the room; cases of the same room are shown side by side
+  std::string scene_name;  // its own name, or its file's
   std::string pose_source;
 };
 
 CaseFiles ReadCase(const std::string& folder, const StudyCase& head) {
-  CaseFiles files{head, ReadRunFolder(folder + "/" + head.name), "", ""};
+  CaseFiles files{head, ReadRunFolder(folder + "/" + head.name), "", "", ""};
   const Config settings = Config::FromText(files.run.settings, head.name + "/run.yaml");
   files.scene = SettingOf(settings, "scene");
+  files.scene_name = SettingOf(settings, "provenance.scene_name");
+  if (files.scene_name.empty()) files.scene_name = fs::path(files.scene).stem().string();
   files.pose_source = PoseSourceOf(settings);
   return files;
+}
+
+// The file without the folders that it shares with all other scenes' files.
+std::string ShortPath(const std::string& scene, const std::vector<CaseFiles>& cases) {
+  std::size_t common = scene.rfind('/') + 1;  // 0 without a folder
+  for (const CaseFiles& other : cases) {
+    const auto end =
+        std::mismatch(scene.begin(), scene.end(), other.scene.begin(), other.scene.end());
+    const auto equal = static_cast<std::size_t>(end.first - scene.begin());
+    if (other.scene == scene) continue;
+    common = std::min(common, equal == 0 ? 0 : scene.rfind('/', equal - 1) + 1);
+  }
+  return scene.substr(common);
 }
 
 // A short name for a case's room, unique among all. Maps with different cell sizes cannot be
 // compared side by side and so count as different rooms.
 std::string RoomName(const CaseFiles& c, const std::vector<CaseFiles>& cases) {
   const double cell_m = c.run.map.geometry.resolution_m;
-  const std::string stem = fs::path(c.scene).stem().string();
-  bool is_stem_shared = false;
+  bool is_name_shared = false;
   bool has_other_cells = false;
   for (const CaseFiles& other : cases) {
-    is_stem_shared |= other.scene != c.scene && fs::path(other.scene).stem() == stem;
+    is_name_shared |= other.scene != c.scene && other.scene_name == c.scene_name;
     has_other_cells |= other.scene == c.scene && other.run.map.geometry.resolution_m != cell_m;
   }
-  const std::string& name = is_stem_shared ? c.scene : stem;
+  const std::string name = is_name_shared
+                               ? fmt::format("{} ({})", c.scene_name, ShortPath(c.scene, cases))
+                               : c.scene_name;
   return has_other_cells ? fmt::format("{}, cells of {} m", name, cell_m) : name;
 }
 
@@ -60,6 +77,16 @@ void NameRooms(std::vector<CaseFiles>& cases) {
   std::vector<std::string> names;
   for (const CaseFiles& c : cases) names.push_back(RoomName(c, cases));
   for (std::size_t i = 0; i < cases.size(); ++i) cases[i].scene = names[i];
+}
+
+// "Study of den and office", for a file without a title.
+std::string TitleOfRooms(const std::vector<CaseFiles>& cases) {
+  std::vector<std::string> names;
+  for (const CaseFiles& c : cases) {
+    const bool is_known = std::find(names.begin(), names.end(), c.scene_name) != names.end();
+    if (!is_known) names.push_back(c.scene_name);
+  }
+  return fmt::format("Study of {}", fmt::join(names, " and "));
 }
 
 // Corners of the path of the camera on the floor, [x, y, x, y, ...] in metres.
@@ -182,11 +209,12 @@ void WriteStudyReport(const std::string& folder, const ReportPlace& place) {
   std::vector<CaseFiles> cases;
   for (const StudyCase& head : outline.cases) cases.push_back(ReadCase(folder, head));
   NameRooms(cases);
+  const std::string title = outline.title.empty() ? TitleOfRooms(cases) : outline.title;
   try {
     const Json metrics = Json::parse(ReadFile(folder + "/metrics.json"));
     Json json = StudyJson(outline, OverridesIn(folder), cases, metrics);
     json["back"] = place.back;
-    WriteFile(place.into + "/report.html", FillPage("study.html", outline.title, JsonText(json)));
+    WriteFile(place.into + "/report.html", FillPage("study.html", title, JsonText(json)));
   } catch (const Json::exception&) {
     throw InputError(folder + "/metrics.json", "does not hold the study's scores");
   }

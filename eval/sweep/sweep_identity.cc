@@ -64,6 +64,7 @@ SweepEnvironment EnvironmentOf(const SweepPlan& plan, const Shard& shard) {
                                   {"given", plan.given_text},  {"version", DEPTHGRID_VERSION},
                                   {"build", BuildId()},        {"instruction_set", DEPTHGRID_ARCH},
                                   {"shard", ShardText(shard)}, {"rooms", RoomsText(plan)}};
+  environment["scene_names"] = SceneNamesText(plan);
   if (HasFilesOnAxes(plan)) environment["files_from"] = AbsoluteFolder(plan.base_folder);
   return environment;
 }

@@ -101,6 +101,30 @@ std::string RoomsText(const SweepPlan& plan) {
   return text;
 }
 
+std::string SceneNamesText(const SweepPlan& plan) {
+  const auto& keys = plan.parameter_keys;
+  const auto axis = std::find(keys.begin(), keys.end(), "scene");
+  std::map<std::string, std::string> names;
+  for (const PlannedRun& run : plan.runs) {
+    if (axis == keys.end() && !names.empty()) break;
+    std::string value;
+    if (axis != keys.end()) value = run.values[static_cast<std::size_t>(axis - keys.begin())];
+    if (names.contains(value)) continue;
+    try {
+      const std::string scene = plan.OptionsOf(run).scene;
+      names[value] = LoadNamedScene(scene).name;
+      if (axis == keys.end()) return fmt::format("{} = {}\n", scene, names[value]);
+    } catch (const InputError&) {  // its runs fail and say why
+      names[value] = "";
+    }
+  }
+  std::string text;
+  for (const auto& [value, name] : names) {
+    if (!name.empty()) text += fmt::format("{} = {}\n", value, name);
+  }
+  return text;
+}
+
 std::vector<std::string> DoubtsOfPaths(const SweepPlan& plan, int threads) {
   std::vector<std::string> doubts;
   const auto add = [&](const std::string& doubt) {

@@ -12,6 +12,10 @@ namespace depthgrid {
 // changed room.
 std::string RoomsText(const SweepPlan& plan);
 
+// "VALUE = NAME" for each scene by the value of its key: the name that its file gives it. Scenes
+// that cannot be read are left out.
+std::string SceneNamesText(const SweepPlan& plan);
+
 // Throws InputError for a scene that cannot be read, and for a path or movers that none of their
 // scenes has, or whose file is missing: every run of them must fail. A combination that does not
 // fit is a failed run instead.

@@ -38,19 +38,28 @@ function scaleHead(at) {
   return svg("svg", { class: "share", viewBox: `0 0 ${BAR_WIDTH} ${BAR_HEIGHT}`, role: "img", "aria-label": "share of the error" }, ...labels);
 }
 
+// A score's table with all digits.
+function csvOfScore(stages, { unit, factor }) {
+  const inUnit = (text) => (unit ? `${text} (${unit})` : text);
+  const scaled = (value) => (isNumber(value) ? value * factor : value);
+  const heads = ["truth for", "share", ...["error", "owned", "owned, 95 % low", "owned, 95 % high"].map(inUnit), "p (Holm)"];
+  return csvText([heads, ...stages.map(([name, stage]) => [nameOf(name), stage.share, scaled(stage.error), scaled(stage.owned), ...(stage.owned_interval95 ?? ["", ""]).map(scaled), stage.p_holm])]);
+}
+
 function initScores() {
   for (const [metric, score] of Object.entries(ABLATION.scores)) {
     const at = scaleOf(score);
     const stages = Object.entries(score.truth_for);
     const anyShare = stages.some(([, stage]) => isNumber(stage.share));
-    const { unit, factor, label } = suitedUnit(metric, [score.error, ...stages.map(([, stage]) => stage.error)]);
+    const suited = suitedUnit(metric, [score.error, ...stages.map(([, stage]) => stage.error)]);
+    const { unit, factor, label } = suited;
     const show = (value) => (isNumber(value) ? compact(value * factor) : "–");
     const rows = stages.map(([name, stage]) => [
       nameOf(name), percent(stage.share), ...(anyShare ? [barOf(score, stage, name, at)] : []), show(stage.error), show(stage.owned),
       stage.owned_interval95 ? `${show(stage.owned_interval95[0])} to ${show(stage.owned_interval95[1])}` : "–", compact(stage.p_holm)]);
     const inUnit = (text) => (unit ? `${text} (${unit})` : text);
     const what = score.error_is === "the score" ? label : `1 − ${label}`;
-    byId("scores").append(make("h3", {}, `${what}: ${show(score.error)}${unit ? ` ${unit}` : ""} as it is`),
+    byId("scores").append(make("h3", {}, `${what}: ${show(score.error)}${unit ? ` ${unit}` : ""} as it is`, saveButtons(`ablation ${metric}`, { CSV: () => csvOfScore(stages, suited) })),
       make("div", { class: "scroll" }, tableOf(["truth for", "share", ...(anyShare ? [scaleHead(at)] : []), ...["error", "owned", "95 % interval"].map(inUnit), "p"], rows)));
   }
 }

@@ -3,11 +3,21 @@
 const SWEEP = JSON.parse(byId("data").textContent);
 // Counts and seeds in full.
 const exact = (value) => (Number.isInteger(value) ? String(value) : compact(value));
-// Files without folder and extension, if they remain distinct.
-function nameLabels({ key, texts }) {
+// Without the folders that all of these paths begin with.
+function withoutCommonFolder(paths) {
+  const parts = paths.map((path) => path.split("/"));
+  const shortest = Math.min(...parts.map((part) => part.length - 1));
+  let common = 0;
+  while (common < shortest && parts.every((part) => part[common] === parts[0][common])) ++common;
+  return parts.map((part) => part.slice(common).join("/"));
+}
+
+// Scenes by their own names, files without folder and extension, if they remain distinct.
+function nameLabels({ key, texts, names = [] }) {
   if (key !== "scene" && key !== "trajectory") return texts;
-  const names = texts.map((text) => text.split("/").at(-1).replace(/\.\w+$/, ""));
-  return new Set(names).size === texts.length ? names : texts;
+  const short = texts.map((text, i) => names[i] || text.split("/").at(-1).replace(/\.\w+$/, ""));
+  if (new Set(short).size === texts.length) return short;
+  return withoutCommonFolder(texts);
 }
 // `texts` are as they were set, `labels` as they are shown.
 const AXES = SWEEP.axes.map((axis) => ({ ...axis, labels: axis.numeric ? axis.numbers.map(exact) : nameLabels(axis) }));

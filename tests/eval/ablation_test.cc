@@ -73,8 +73,8 @@ TEST(SharesOf, WhatRoundingLeavesIsNothing) {
   EXPECT_EQ(stages.at("depth").gain.mean_difference, 0.0);
   EXPECT_EQ(stages.at("depth").share, 0.0);
   EXPECT_EQ(stages.at("depth").gain.wilcoxon.p_value, 1.0);  // six seeds alike are 0.03
-  EXPECT_EQ(AblationJson(shares, 6).find("e-1"), std::string::npos);
-  EXPECT_EQ(AblationJson(shares, 6).find("-0.0\n"), std::string::npos);
+  EXPECT_EQ(AblationJson(shares, 6, "room").find("e-1"), std::string::npos);
+  EXPECT_EQ(AblationJson(shares, 6, "room").find("-0.0\n"), std::string::npos);
 }
 
 TEST(SharesOf, OfNoErrorAreNone) {
@@ -85,7 +85,7 @@ TEST(SharesOf, OfNoErrorAreNone) {
   const std::vector<ErrorShares> shares = SharesOf(runs);
   ASSERT_EQ(shares.size(), 1U);
   for (const StageShare& stage : shares[0].stages) EXPECT_FALSE(stage.share) << stage.variant;
-  EXPECT_NE(AblationJson(shares, 1).find(R"("share": null)"), std::string::npos);
+  EXPECT_NE(AblationJson(shares, 1, "room").find(R"("share": null)"), std::string::npos);
 }
 
 // Seeds 1 and 3 give the same everywhere; of seed 2 one variant differs.
@@ -214,7 +214,14 @@ TEST_F(ProgramAblate, ItsPageShowsEveryStageOfEveryScore) {
   EXPECT_THAT(heads_of("1 − map.observable.occupied.f1"),
               HasSubstr("error; owned; 95 % interval; p"));
   EXPECT_THAT(browser.Evaluate("document.getElementById('subtitle').textContent"),
-              HasSubstr("prove nothing): room, 12 frames, SLAM orb_slam2, "));
+              HasSubstr("prove nothing): test_room, 12 frames, SLAM orb_slam2, "));
+  EXPECT_EQ(browser.Evaluate("document.querySelector('h1').textContent"), "Ablation of test_room");
+  EXPECT_EQ(browser.Evaluate("document.querySelectorAll('#scores h3 .save button').length"),
+            json["scores"].size());
+  EXPECT_THAT(browser.Evaluate("csvOfScore([['a_b', {share: 0.25, error: 0.003, owned: 0.001, "
+                               "p_holm: 1}]], {unit: 'mm', factor: 1000})"),
+              "truth for,share,error (mm),owned (mm),\"owned, 95 % low (mm)\",\"owned, 95 % high "
+              "(mm)\",p (Holm)\na b,0.25,3,1,,,1\n");
   browser.Open(Path("out/report.html"), 400);
   // The labels of each scale lie on it, and apart, wherever 0 and all of the error are.
   EXPECT_EQ(

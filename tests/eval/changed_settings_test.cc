@@ -63,13 +63,18 @@ TEST(MeasuredSettings, LeaveOutWhatVaries) {
       "scene: rooms/den.yaml\nframes: 60\ntrajectory: handheld\nseed: 1\n"
       "slam: {profile: orb_slam2}\nmapper: {method: paper, fusion: {mode: fixed, gain: 0.5}}\n",
       "run.yaml");
-  EXPECT_EQ(MeasuredSettings(experiment, {"seed"}),
+  EXPECT_EQ(MeasuredSettings(experiment, {"seed"}, ""),
             "den, 60 frames, trajectory handheld, SLAM orb_slam2, mapper paper, fusion fixed, gain "
             "0.5");
-  EXPECT_EQ(MeasuredSettings(experiment, {"seed", "scene", "frames", "slam.profile",
-                                          "mapper.method", "mapper.fusion.gain"}),
-            "trajectory handheld, fusion fixed");
-  EXPECT_EQ(MeasuredSettings(Config::FromText("scene: den\nframes: 0\n", "run.yaml"), {}), "den");
+  EXPECT_EQ(
+      MeasuredSettings(
+          experiment,
+          {"seed", "scene", "frames", "slam.profile", "mapper.method", "mapper.fusion.gain"}, ""),
+      "trajectory handheld, fusion fixed");
+  EXPECT_EQ(MeasuredSettings(Config::FromText("scene: den\nframes: 0\n", "run.yaml"), {}, ""),
+            "den");
+  EXPECT_EQ(MeasuredSettings(Config::FromText("scene: x/den.yaml\n", "run.yaml"), {}, "Lab 2"),
+            "Lab 2");
 }
 
 class ProgramChanged : public ProgramTest {};

@@ -288,8 +288,10 @@ cases:
       "[...document.querySelectorAll('#table tbody tr')].map((r) => r.cells[0].innerText).join()");
   EXPECT_EQ(table, "Ground truth (half),Ground truth (one),Ground truth");
   const std::string rooms = browser.Evaluate("STUDY.rooms.map((room) => room.scene).join()");
-  EXPECT_EQ(rooms, Path("room.yaml") + ", cells of 0.05 m," + Path("room.yaml") +
-                       ", cells of 0.02 m," + Path("other/room.yaml"));
+  EXPECT_EQ(rooms,
+            "test_room (room.yaml), cells of 0.05 m,test_room (room.yaml), cells of 0.02 m,"
+            "test_room (other/room.yaml)");
+  EXPECT_EQ(browser.Evaluate("document.querySelector('h1').textContent"), "Study of test_room");
   EXPECT_EQ(browser.Evaluate("STUDY.cases.map((c) => c.true_path.length / 2).join()"), "6,9,6,6");
   EXPECT_EQ(browser.Evaluate("document.querySelector('#paths figcaption').textContent"),
             "Ground truth (half)");

@@ -149,6 +149,9 @@ TEST_F(SweepPage, ItsCommandsRepeatTheRunsOfASweep) {
   const std::string error = "trajectory.slam.mean_euclidean_m";
   const std::vector<double> errors = ReadSweep(Path("out")).Metric(error);
   ASSERT_EQ(errors.size(), 4U);
+  // Two files of one room.
+  EXPECT_EQ(browser_->Evaluate("SWEEP.axes[0].names.join()"), "test_room,test_room");
+  EXPECT_EQ(browser_->Evaluate("AXES[0].labels.join()"), "room.yaml,it's one.yaml");
   for (std::size_t row = 0; row < errors.size(); ++row) {
     std::string command = browser_->Evaluate("commandOf(" + std::to_string(row) + ")");
     ASSERT_TRUE(command.starts_with("depthgrid run experiment.yaml --set scene="));
@@ -177,6 +180,8 @@ TEST_F(SweepPage, OfASweepOverSeedsAlone) {
   EXPECT_THAT(browser_->problems(), IsEmpty());
   EXPECT_EQ(browser_->Evaluate("document.getElementById('subtitle').textContent"),
             "3 runs: 3 seeds");
+  EXPECT_THAT(browser_->Evaluate("document.getElementById('of').textContent"),
+              ::testing::StartsWith("test_room, 12 frames"));  // the name, not the file's
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#headline .card').length"), 2);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#plot, #best, #heat').length"), 0);
   EXPECT_EQ(browser_->Evaluate("document.querySelectorAll('#table tbody tr').length"), 1);
@@ -231,6 +236,10 @@ TEST_F(SweepPage, LongNamesAreShortened) {
   EXPECT_EQ(browser_->Evaluate("AXES[0].labels.join()"), "den,living_room");
   const std::string unlike = R"({key: "scene", texts: ["a/den.yaml", "b/den.yaml"]})";
   EXPECT_EQ(browser_->Evaluate("nameLabels(" + unlike + ").join()"), "a/den.yaml,b/den.yaml");
+  const std::string absolute = R"({key: "scene", texts: ["/x/a/den.yaml", "/x/b/den.yaml"]})";
+  EXPECT_EQ(browser_->Evaluate("nameLabels(" + absolute + ").join()"), "a/den.yaml,b/den.yaml");
+  const std::string named = R"({key: "scene", texts: ["a/den.yaml", "b"], names: ["lab", ""]})";
+  EXPECT_EQ(browser_->Evaluate("nameLabels(" + named + ").join()"), "lab,b");
   EXPECT_EQ(browser_->Evaluate("shortened('planar_slam_measured', 9)"), "plan…ured");
   EXPECT_EQ(browser_->Evaluate("shortened('orb_slam2', 9)"), "orb_slam2");
 }
