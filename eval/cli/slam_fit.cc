@@ -61,7 +61,7 @@ SlamRun ReadRun(const std::string& truth_path, const std::string& estimate_path)
 }
 
 // What `run` would refuse of a fit.
-void RequireUsable(const SlamOptions& options, const std::string& place) {
+void RequireHoldable(const SlamOptions& options, const std::string& place) {
   SlamSettings read;
   try {
     Config::FromText(ToYaml(SlamSettings{options}), place).Read(read);
@@ -182,7 +182,7 @@ void FitSlam(const SlamFitArguments& arguments) {
                                               : fmt::format("{}, the last of {}", files.back(),
                                                             Counted(runs.size(), "run"));
   SlamFit fit = FitSlamErrors(runs, place);
-  RequireUsable(fit.options, place);
+  RequireHoldable(fit.options, place);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     WarnOfSamePoses(runs[i], files[2 * i], files[2 * i + 1]);
   }

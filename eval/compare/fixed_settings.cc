@@ -38,17 +38,17 @@ bool NamesKey(const std::vector<Condition>& where, const std::string& key) {
                      [&](const Condition& c) { return c.first == key; });
 }
 
-std::string EnvironmentOf(const SweepResults& table, const char* key) {
+std::string EnvironmentText(const SweepResults& table, const char* key) {
   const auto found = table.environment.find(key);
   return found == table.environment.end() ? "" : found->second;
 }
 
 FixedSettings OfASweep(const SweepResults& table) {
   FixedSettings fixed;
-  const std::string experiment = EnvironmentOf(table, "experiment");
+  const std::string experiment = EnvironmentText(table, "experiment");
   if (experiment.empty()) return fixed;
   fixed.values = LeavesOf(Config::FromText(experiment, table.folder));
-  const std::string given = EnvironmentOf(table, "given");
+  const std::string given = EnvironmentText(table, "given");
   if (given.empty()) return fixed;
   for (const auto& leaf : LeavesOf(Config::FromText(given, table.folder))) {
     fixed.given.push_back(leaf.first);
@@ -76,7 +76,7 @@ FixedSettings OfRuns(const SweepResults& table) {
 // Hashes of the sweep's rooms with their paths, by name.
 std::map<std::string, std::string> RoomHashes(const SweepResults& table) {
   std::map<std::string, std::string> hashes;
-  std::istringstream lines(EnvironmentOf(table, "rooms"));
+  std::istringstream lines(EnvironmentText(table, "rooms"));
   for (std::string line; std::getline(lines, line);) {
     const auto colon = line.rfind(": ");
     if (colon != std::string::npos) hashes[line.substr(0, colon)] = line.substr(colon + 2);
@@ -91,7 +91,7 @@ bool ShareTheOnlyRoom(const std::map<std::string, std::string>& a,
   return a.size() == 1 && b.size() == 1 && a.begin()->second == b.begin()->second;
 }
 
-void AddColumn(const std::string& key, const std::string& value, SweepResults& table) {
+void AddFixedColumn(const std::string& key, const std::string& value, SweepResults& table) {
   const double number = ParseNumber(value).value_or(std::numeric_limits<double>::quiet_NaN());
   table.parameters.push_back({key, std::vector<std::string>(table.rows(), value),
                               std::vector<double>(table.rows(), number)});
@@ -101,7 +101,8 @@ void AddConditionsOf(const std::vector<Condition>& where, const FixedSettings& f
                      SweepResults& table) {
   for (const Condition& condition : where) {
     const std::string* value = fixed.Find(condition.first);
-    if (value && !HasParameter(table, condition.first)) AddColumn(condition.first, *value, table);
+    if (value && !HasParameter(table, condition.first))
+      AddFixedColumn(condition.first, *value, table);
   }
 }
 
@@ -126,9 +127,9 @@ void RequireSameValue(const std::string& key, const std::string& in_a, const Swe
                   key, in_b, a.folder, in_a));
 }
 
-void RequireSameRooms(const std::map<std::string, std::string>& a,
-                      const std::map<std::string, std::string>& b, const SweepResults& table_a,
-                      const SweepResults& table_b) {
+void RequireSameContents(const std::map<std::string, std::string>& a,
+                         const std::map<std::string, std::string>& b, const SweepResults& table_a,
+                         const SweepResults& table_b) {
   for (const auto& [name, hash] : b) {
     const auto other = a.find(name);
     if (other == a.end() || other->second == hash) continue;
@@ -191,10 +192,10 @@ void AlignFixedSettings(const CompareOptions& options, SweepResults& a, SweepRes
     const std::string* in_b = fixed_b.Find(key);
     if (in_a && in_b && !(one_room && IsOfTheRoom(key))) RequireSameValue(key, *in_a, a, *in_b, b);
     if (IsSeedKey(key)) continue;
-    if (in_a && HasParameter(b, key)) AddColumn(key, AsOnThatAxis(key, *in_a, b), a);
-    if (in_b && HasParameter(a, key) && !in_a) AddColumn(key, AsOnThatAxis(key, *in_b, a), b);
+    if (in_a && HasParameter(b, key)) AddFixedColumn(key, AsOnThatAxis(key, *in_a, b), a);
+    if (in_b && HasParameter(a, key) && !in_a) AddFixedColumn(key, AsOnThatAxis(key, *in_b, a), b);
   }
-  RequireSameRooms(rooms_a, rooms_b, a, b);
+  RequireSameContents(rooms_a, rooms_b, a, b);
 }
 
 std::vector<DifferentSetting> FixedDifferences(const FixedSettings& a, const FixedSettings& b) {

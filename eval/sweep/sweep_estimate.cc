@@ -22,7 +22,7 @@ constexpr std::size_t kShortFrames = 24;
 constexpr std::size_t kLongFrames = 60;
 // Give up when this many points have failed.
 constexpr std::size_t kMostTries = 8;
-// Kinds of runs (KindOf) that are timed; the others take the times of the most similar one.
+// Kinds of runs (RunKindOf) that are timed; the others take the times of the most similar one.
 constexpr std::size_t kMostPilots = 4;
 
 // CPU seconds of parts of a run.
@@ -100,7 +100,7 @@ std::vector<std::string> ImageKey(const SweepPlan& plan, const PlannedRun& run) 
 // Runs of one kind take about as long for a frame: they have the same value on each axis except
 // seeds and frames, where numbers of SLAM and of the fusion count as equal unless one is 0 (which
 // may switch something off: a gain of 0 costs a third).
-std::vector<std::string> KindOf(const SweepPlan& plan, const PlannedRun& run) {
+std::vector<std::string> RunKindOf(const SweepPlan& plan, const PlannedRun& run) {
   std::vector<std::string> kind;
   for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
     const std::string& key = plan.parameter_keys[i];
@@ -169,7 +169,7 @@ std::vector<const PlannedRun*> LongestRuns(const SweepPlan& plan, const std::vec
   std::map<std::vector<std::string>, std::size_t> known;
   for (const int run : runs) {
     const PlannedRun& planned = plan.runs[static_cast<std::size_t>(run)];
-    const auto [entry, is_new] = known.emplace(KindOf(plan, planned), longest.size());
+    const auto [entry, is_new] = known.emplace(RunKindOf(plan, planned), longest.size());
     if (is_new) longest.push_back(&planned);
     const PlannedRun*& best = longest[entry->second];
     if (frames.Of(planned) > frames.Of(*best)) best = &planned;
@@ -188,7 +188,7 @@ Pilots PilotsOf(const SweepPlan& plan, const std::vector<const PlannedRun*>& can
       NamingPlaces(plan.PlaceOfKey(), [&] {
         const ExperimentOptions options = plan.OptionsOf(*run);
         RequireSound(options, plan.PlaceOfKey());
-        pilots.times.emplace(KindOf(plan, *run), TimesOfFirstFrames(options, context));
+        pilots.times.emplace(RunKindOf(plan, *run), TimesOfFirstFrames(options, context));
       });
     } catch (const DiskFullError&) {
       throw;
@@ -230,7 +230,7 @@ SweepEstimate EstimateSweep(const SweepPlan& plan, const std::vector<int>& runs,
     const bool new_scans = scans.insert(groups[static_cast<std::size_t>(run)]).second;
     const bool new_images = images.insert(ImageKey(plan, planned)).second;
     if (pilots.times.empty()) continue;
-    const PilotTimes& times = pilots.For(KindOf(plan, planned));
+    const PilotTimes& times = pilots.For(RunKindOf(plan, planned));
     const double count = frames.Of(planned);
     estimate.cpu_s += times.RunOf(count) + (new_scans ? count * times.scan_s : 0.0) +
                       (new_images ? count * times.image_s : 0.0);

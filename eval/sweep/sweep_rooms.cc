@@ -58,7 +58,7 @@ struct NamedPart {
 };
 
 // Each is judged by itself: a path that the scene lacks says nothing about scene and movers.
-std::vector<NamedPart> PartsOf(const SweepPlan& plan, const ExperimentOptions& options) {
+std::vector<NamedPart> NamedPartsOf(const SweepPlan& plan, const ExperimentOptions& options) {
   ExperimentOptions empty = options;
   empty.movers = kNoMovers;
   const std::string scene = FailureOf(plan, [&] { RequireMovers(empty); });
@@ -76,7 +76,7 @@ void RequireRooms(const SweepPlan& plan) {
   std::set<std::string> usable;
   std::vector<NamedPart> failed;
   for (const ExperimentOptions& options : RoomsOf(plan)) {
-    for (const NamedPart& part : PartsOf(plan, options)) {
+    for (const NamedPart& part : NamedPartsOf(plan, options)) {
       if (part.failure.empty()) {
         usable.insert(part.name);
       } else {

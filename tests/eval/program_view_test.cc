@@ -41,9 +41,10 @@ TEST_F(ProgramView, AnEmptyMapIsSaidWithItsCause) {
 // The angle from edge to edge: 2 atan(40 / 60) about the centre, little far beside it.
 TEST_F(ProgramView, TheImagesWidthIsThatOfTheirEdges) {
   const auto said = [&](const std::string& camera) {
-    return Program("run ./small.yaml -o out --force --set sensor.max_range_m=0.1 "
-                   "--set sensor.fx=60 --set sensor.fy=60" +
-                   camera)
+    return Program(
+               "run ./small.yaml -o out --force --set sensor.max_range_m=0.1 "
+               "--set sensor.fx=60 --set sensor.fy=60" +
+               camera)
         .err;
   };
   EXPECT_THAT(said(""), HasSubstr("80x60 pixels and 67.4 degrees wide"));
