@@ -126,12 +126,21 @@ class FrameCounts {
       : plan_(plan), inputs_(context.threads) {}
 
   double Of(const PlannedRun& run) {
-    const auto [entry, is_new] = known_.emplace(ImageKey(plan_, run), 0.0);
+    const auto [entry, is_new] = known_.emplace(PathKey(run), 0.0);
     if (is_new) entry->second = Count(run);
     return entry->second;
   }
 
  private:
+  // The values that decide how many there are.
+  std::vector<std::string> PathKey(const PlannedRun& run) const {
+    std::vector<std::string> values;
+    for (std::size_t i = 0; i < plan_.parameter_keys.size(); ++i) {
+      const std::string& key = plan_.parameter_keys[i];
+      if (IsFileKey(key) || key == "frames") values.push_back(run.values[i]);
+    }
+    return values;
+  }
   double Count(const PlannedRun& run) {
     try {
       const ExperimentOptions options = plan_.OptionsOf(run);
