@@ -146,7 +146,8 @@ TEST_F(Movers, OthersThanTheScenesAreRefused) {
        "or names joined by +, did you mean 'visitor'?"});
   ExpectRefusal(
       "run ./small.yaml -o out --set movers=visitor+visitor",
-      {"movers=visitor+visitor: movers is 'visitor+visitor', must name 'visitor' once\n"});
+      {"movers=visitor+visitor: movers is 'visitor+visitor', must name 'visitor' once (scene " +
+       Path("room.yaml") + ")\n"});
   ExpectRefusal("run ./small.yaml -o out --set movers=guide+", {"movers is 'guide+'"});
   ExpectRefusal("run ./small.yaml -o out --set movers=guide+all", {"movers is 'guide+all'"});
   Write("moved.yaml", std::string(kExperiment) + "movers: nobody\n");
