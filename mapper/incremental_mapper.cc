@@ -316,11 +316,11 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   // Groups do not reach across a gap: loops may open it, nothing else may give way in its place.
   if (!added.slam_motion) reference->BeginPart(PartPlace::kKnown);
   if (added.kept()) {
-    // SLAM's jitter in this frame is no correction of the state.
-    const Pose2 corrected =
-        prediction.map_from_base *
-        Pose2::FromVector(filter.step().state_gain.topRows<3>() * fused.innovation);
-    if (added.slam_motion) reference->Corrected(prediction.map_from_base, corrected);
+    const FilterStep& step = filter.step();
+    if (added.slam_motion) {
+      reference->Corrected(
+          step.previous, step.previous * Pose2::FromVector(step.previous_gain * fused.innovation));
+    }
     reference->Insert(scans.kept(), fused.map_from_base, fused.covariance);
   } else {
     reference->InsertTied(scans.matched, fused.map_from_base, added.tied_to);

@@ -66,10 +66,9 @@ class ReferenceMap {
                             const Prediction& prediction) = 0;
   // The parts used by the last match; valid until the next call of any member function.
   virtual std::span<const MapPart> MatchedParts() const = 0;
-  // Called before inserting a frame: its predicted pose, and that pose with the correction of the
-  // filter's state, which leaves out SLAM's jitter in this frame.
-  virtual void Corrected(const Pose2& /*predicted_map_from_base*/, const Pose2& /*map_from_base*/) {
-  }
+  // Called before inserting a frame: the pose of the frame before, as the filter had it and as this
+  // frame's match corrects it. SLAM's jitter is left out of both.
+  virtual void Corrected(const Pose2& /*map_from_previous*/, const Pose2& /*corrected*/) {}
   // Adds the scan at its fused pose. `covariance` is that of the pose in base axes, zero if not
   // tracked.
   virtual void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

@@ -103,6 +103,8 @@ FilterStep CorrectionFilter::StepTo(const Pose2& slam_from_base, double stamp_s)
                   .cwiseSqrt();
   step.gain = last_gain_;
   step.state_gain.topRows<3>() = last_gain_;
+  step.previous = step.predicted * Inverse(motion);
+  step.previous_gain = AdjointOf(motion) * last_gain_;
   return step;
 }
 

@@ -19,6 +19,7 @@ DriftState Predicted(const DriftState& state, const Pose2& motion, int frames,
   f.topRightCorner<3, 3>() = errors.bias_added.asDiagonal();
   f.bottomRightCorner<3, 3>() = errors.bias_kept.asDiagonal();
   next.covariance = f * state.covariance * f.transpose();
+  next.with_previous = state.covariance.topRows<3>() * f.topRows<3>().transpose();
   next.covariance.topLeftCorner<3, 3>() += Squared(errors.walk);
   next.covariance.bottomRightCorner<3, 3>() += Squared(errors.bias_renewed);
   return next;
@@ -39,6 +40,7 @@ DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,
       WithAddedCovariance(seen, predicted.covariance.topLeftCorner<3, 3>());
   const Eigen::Matrix<double, 6, 3>& gain = update.gain =
       predicted.covariance.leftCols<3>() * weight;
+  update.previous_gain = predicted.with_previous * weight;
   const Eigen::Matrix<double, 6, 1> step = gain * update.fused.innovation;
   update.state.map_from_base = predicted.map_from_base * Pose2::FromVector(step.head<3>());
   update.state.bias = predicted.bias + step.tail<3>();

@@ -15,6 +15,8 @@ struct DriftState {
   Pose2 map_from_base;
   Eigen::Vector3d bias = Eigen::Vector3d::Zero();
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
+  // Where predicted: covariance of the pose before the motion with this one, each in its base axes.
+  Eigen::Matrix3d with_previous = Eigen::Matrix3d::Zero();
 };
 
 // The state after SLAM moved by `motion` during `frames` frames.
@@ -28,6 +30,8 @@ struct DriftUpdate {
   DriftState state;
   FusedPose fused;
   Eigen::Matrix<double, 6, 3> gain;  // gain of the whole state
+  // That of the pose before the motion, in its base axes (Rauch, Tung and Striebel 1965).
+  Eigen::Matrix3d previous_gain;
 };
 DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,
                     const MotionNoise& noise);

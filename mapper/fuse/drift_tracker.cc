@@ -123,6 +123,8 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
         next = update.state;
         step_.gain = update.fused.gain;
         step_.state_gain = update.gain;
+        step_.previous = state_.map_from_base;
+        step_.previous_gain = update.previous_gain;
         step_.new_bias.reset();
         matched = match;
         if (spread_) TestBound(PredictionOf(predicted, noise_), match);

@@ -25,6 +25,10 @@ struct FilterStep {
   // Gains of the reported pose and of the state.
   Eigen::Matrix3d gain = Eigen::Matrix3d::Zero();
   Gain state_gain = Gain::Zero();
+  // The state's pose a frame before, and what this frame's innovation tells of it, in its base axes
+  // (docs/math.md, "Groups across a correction").
+  Pose2 previous;
+  Eigen::Matrix3d previous_gain = Eigen::Matrix3d::Zero();
 };
 
 }  // namespace depthgrid

@@ -69,7 +69,10 @@ Landmarks::Row Landmarks::RowOf(const Sighting& sighting, const Motion2& motion,
   if (!trust.landmark_factor.empty()) {
     row.weight /= trust.landmark_factor[static_cast<std::size_t>(sighting.landmark)];
   }
-  row.jacobian = OffsetJacobian(motion.TurnBack(landmark.normal), local.point_m);
+  // The wall that the group saw is taken where it passes the landmark. Were it the sighting's own
+  // point, an error of the landmark's normal would turn all groups at once.
+  row.jacobian = OffsetJacobian(motion.TurnBack(landmark.normal),
+                                motion.TurnBack(landmark.point_m - motion.shift_m));
   return row;
 }
 

@@ -95,6 +95,26 @@ class NearbySigma {
   double squares_ = 0.0;
 };
 
+// Of a stretch. A sigma that has grown may also shrink: once it is right, the errors are as large
+// as believed.
+double GrowthOf(const NearbySigma& nearby, bool was_grown) {
+  if (nearby.Count() <= kLeastNear) return 1.0;
+  const double times = nearby.OverCommon();
+  return (nearby.OverBelieved() > 1.0 || was_grown) && times > kLeastGrowth ? times : 1.0;
+}
+
+// Of one motion that may err alone, as where a wheel slips. All in common sigmas; `error`:
+// residual, `believed`: the sigma with which it was solved. What was seen differs from the motion
+// by error / share, and its own variance follows from the share.
+double GrowthAlone(double error, double share, double believed) {
+  if (share < kLeastShareSeen) return 1.0;
+  const double difference = error / share;
+  const double seen_variance = believed * believed * (1.0 / share - 1.0);
+  const double square = difference * difference;
+  if (square <= kLeastGrowth * kLeastGrowth * (1.0 + seen_variance)) return 1.0;
+  return std::sqrt(square - seen_variance);
+}
+
 }  // namespace
 
 std::vector<Eigen::Vector3d> SharesSeen(const std::vector<GroupLink>& motions,
@@ -174,14 +194,12 @@ std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
       for (std::size_t j = i - std::min(i, kNear); j < end; ++j) {
         nearby.Add(errors[j][axis], shares_seen[j][axis], grown[j][axis]);
       }
-      if (nearby.Count() <= kLeastNear) continue;
-      const double times = nearby.OverCommon();
-      // A sigma that has grown may also shrink: once it is right, the errors are as large as
-      // believed.
       const bool was_grown = !before.empty() && before[i][axis] > 1.0;
-      if ((nearby.OverBelieved() > 1.0 || was_grown) && times > kLeastGrowth) {
-        growth[i][axis] = times;
-      }
+      growth[i][axis] = GrowthOf(nearby, was_grown);
+      if (before.empty()) continue;  // the shares are not known yet
+      const double alone =
+          GrowthAlone(errors[i][axis] * grown[i][axis], shares_seen[i][axis], grown[i][axis]);
+      growth[i][axis] = std::max(growth[i][axis], alone);
     }
   }
   return growth;

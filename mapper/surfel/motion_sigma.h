@@ -41,13 +41,14 @@ Eigen::Vector3d MotionSigma(const std::vector<GroupLink>& unit,
                             const std::vector<Eigen::Vector3d>& shares_seen);
 
 // Local sigma around each motion as a multiple of `sigma` (MotionSigma): 1, or the multiple where
-// it is 5 or more. Otherwise SLAM that is perfect for long and then drifts would be trusted to the
-// end, as most of its motions are right. `believed`: the links as the poses were adjusted with
-// them, one for each of `unit`, growth included. Their residuals r are compared with the expected
-// r^2 = share * sigma^2, each motion's with its own, so the growth shows even where SLAM is trusted
-// far too much and hardly lets the poses move, and does not feed on itself where a motion is
-// believed far less than its neighbours. `before`: the growth in `believed`; empty if there is
-// none.
+// it is 5 or more, and that of the motion alone where it was seen to be as far off. Otherwise SLAM
+// that is perfect for long and then drifts would be trusted to the end, as most of its motions are
+// right. `believed`: the links as the poses were adjusted with them, one for each of `unit`, growth
+// included. Their residuals r are compared with the expected r^2 = share * sigma^2, each motion's
+// with its own, so the growth shows even where SLAM is trusted far too much and hardly lets the
+// poses move, and does not feed on itself where a motion is believed far less than its neighbours.
+// `before`: the growth in `believed`; empty before the first round, when the shares are not known
+// and no motion is judged alone.
 std::vector<Eigen::Vector3d> MotionGrowth(const std::vector<GroupLink>& unit,
                                           const std::vector<GroupLink>& believed,
                                           const std::vector<Pose2>& map_from_group,

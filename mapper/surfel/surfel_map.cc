@@ -102,9 +102,10 @@ void SurfelOptions::Visit(OptionsVisitor& v) {
            "a surfel is changed by what lies this near to it along its normal");
   v.Number("merge_gate_sigmas", merge_gate_sigmas, {0.0, 100.0},
            "merge_gate_m is widened by this many sigmas of noise");
-  v.Number("jump_m", jump_m, {0.0, 1000.0},
-           "a match that moves the estimate, or what lies 3 m away, by more than this moves its "
-           "group along");
+  v.Number(
+      "jump_m", jump_m, {0.0, 1000.0},
+      "a match that moves the pose of the frame before, or what lies 3 m from it, by more than "
+      "this moves that frame's group along");
   v.Number("stay_m", stay_m, {0.0, 1000.0},
            "at the end, frames stay this near to where the joint adjustment put them; 0: no limit");
   v.Number("moving_m", moving_m, {0.0, 10.0},
@@ -153,10 +154,10 @@ void SurfelMap::InsertInto(SurfelStore& map, const std::vector<Surfel>& surfels,
   }
 }
 
-void SurfelMap::Corrected(const Pose2& predicted_map_from_base, const Pose2& map_from_base) {
-  const Eigen::Vector3d jump = Between(predicted_map_from_base, map_from_base).vector();
+void SurfelMap::Corrected(const Pose2& map_from_previous, const Pose2& corrected) {
+  const Eigen::Vector3d jump = Between(map_from_previous, corrected).vector();
   if (jump.cwiseQuotient(kMotionUnit).norm() <= options_.jump_m) return;
-  groups_.MoveNewest(map_from_base * Inverse(predicted_map_from_base));
+  groups_.MoveNewest(corrected * Inverse(map_from_previous));
 }
 
 void SurfelMap::Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

@@ -27,8 +27,8 @@ struct SurfelOptions {
   // the piece.
   double merge_gate_m = 0.02;
   double merge_gate_sigmas = 3.0;
-  // A match that moves the estimate, or points 3 m away, by more than this also moves the newest
-  // group (docs/math.md, "Joint adjustment").
+  // A match that moves the pose of the frame before, or points 3 m from it, by more than this also
+  // moves the newest group (docs/math.md, "Joint adjustment").
   double jump_m = 0.02;
   // Standard deviation by which Smoothed() holds final poses to those of the joint adjustment.
   double stay_m = 0.3;
@@ -46,7 +46,7 @@ class SurfelMap : public ReferenceMap {
 
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   std::span<const MapPart> MatchedParts() const override { return parts_; }
-  void Corrected(const Pose2& predicted_map_from_base, const Pose2& map_from_base) override;
+  void Corrected(const Pose2& map_from_previous, const Pose2& corrected) override;
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,
               const Eigen::Matrix3d& covariance) override;
   void InsertTied(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "mapper/fuse/fusion.h"
 #include "mapper/surfel/skyline_matrix.h"
 
 namespace depthgrid {
@@ -58,6 +59,31 @@ TEST(Landmarks, ErrorsAreAsSightingsDiffer) {
   // histogram's bins are a tenth of a sigma.
   EXPECT_NEAR(errors.variance_factor, 1.4826 * 1.4826 * 8.0 / 7.0, 0.15);
   EXPECT_NEAR(errors.correlation, 1.0, 1e-9);
+}
+
+// Each group sees pieces of the wall at places of its own, and draws it at an angle of its own. A
+// turn of all groups changes nothing of how they fit together.
+TEST(Landmarks, NothingTurnsAllGroupsAtOnce) {
+  const std::vector<Pose2> poses = {{0.0, 0.0, 0.0}, {0.3, -0.2, 0.2}, {0.1, 0.5, -0.4}};
+  std::vector<SurfelGroup> groups = WallSeen(3);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const Motion2 seen(Inverse(poses[g]) * Pose2{0.0, 0.003 * static_cast<double>(g * g),
+                                                 0.003 * static_cast<double>(g * g)});
+    for (Surfel& surfel : groups[g].surfels) surfel = seen * surfel;
+  }
+  const Landmarks landmarks(groups, poses, kGate);
+  SkylineMatrix h({0, 0, 0, 0, 0, 0, 0, 0, 0});
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(9);
+  landmarks.AddTo(poses, {1e9, {}}, h, g);
+  double torque = 0.0;
+  double size = 0.0;
+  for (std::size_t k = 0; k < poses.size(); ++k) {
+    const Eigen::Vector3d turned = AdjointOf(Inverse(poses[k])) * Eigen::Vector3d::UnitZ();
+    const double part = g.segment<3>(3 * static_cast<Eigen::Index>(k)).dot(turned);
+    torque += part;
+    size += std::abs(part);
+  }
+  EXPECT_LT(std::abs(torque), 1e-9 * size);
 }
 
 // Eight groups see 16 pieces of a wall, a sigma before and behind it in turns; one piece three.

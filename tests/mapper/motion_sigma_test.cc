@@ -202,15 +202,45 @@ TEST(MotionGrowth, IsWhereSlamErrsByFarMoreThanElsewhere) {
     }
     EXPECT_EQ(growth[static_cast<std::size_t>(i)].z(), 1.0) << i;
   }
-  // One wrong motion alone says nothing of its neighbours.
+  // One wrong motion alone tells of itself and not of its neighbours, and of itself if it was seen.
   std::vector<Pose2> jumped{{0.0, 0.0, 0.0}};
   for (std::size_t i = 0; i < 60; ++i) {
     jumped.push_back(jumped.back() * unit[i].first_from_second *
                      Pose2{i == 20 ? 0.5 : 0.0005, 0.0, 0.0});
   }
-  for (const Eigen::Vector3d& times : MotionGrowth(unit, believed, jumped, shares, sigma, {})) {
-    EXPECT_EQ(times, Eigen::Vector3d::Ones());
-  }
+  const std::vector<Eigen::Vector3d> none(60, Eigen::Vector3d::Ones());
+  const auto alone = [&](double share) {
+    std::vector<Eigen::Vector3d> seen = shares;
+    seen[20].setConstant(share);
+    return MotionGrowth(unit, believed, jumped, seen, sigma, none);
+  };
+  EXPECT_EQ(alone(0.2)[20], Eigen::Vector3d::Ones());
+  EXPECT_NEAR(alone(0.5)[20].x(), 500.0 / 0.5, 1.0);
+  for (const std::size_t i : {19U, 21U}) EXPECT_EQ(alone(0.5)[i], Eigen::Vector3d::Ones()) << i;
+}
+
+// What was seen errs by ten times SLAM, and one motion is believed to a hundred times it: that it
+// differs by ten is no more than what was seen errs by.
+TEST(MotionGrowth, OfAMotionAloneIsNotWhatWasSeenErrsBy) {
+  const std::vector<GroupLink> unit = ChainOf(21, Eigen::Vector3d::Ones()).links;
+  std::vector<GroupLink> believed = ChainOf(21, Eigen::Vector3d::Constant(0.001)).links;
+  std::vector<Eigen::Vector3d> before(20, Eigen::Vector3d::Ones());
+  before[10].x() = 100.0;
+  believed[10].sigma.x() = 0.1;
+  std::vector<Eigen::Vector3d> shares(20, Eigen::Vector3d::Constant(1.0 / 101.0));
+  shares[10].x() = 1e4 / (1e4 + 100.0);
+  const Eigen::Vector3d sigma = Eigen::Vector3d::Constant(0.001);
+  const auto growth_at = [&](double error_m) {
+    std::vector<Pose2> poses{{0.0, 0.0, 0.0}};
+    for (std::size_t i = 0; i < 20; ++i) {
+      poses.push_back(poses.back() * unit[i].first_from_second *
+                      Pose2{i == 10 ? error_m : 0.0, 0.0, 0.0});
+    }
+    return MotionGrowth(unit, believed, poses, shares, sigma, before)[10].x();
+  };
+  EXPECT_EQ(growth_at(0.01), 1.0);
+  EXPECT_EQ(growth_at(0.04), 1.0);
+  EXPECT_NEAR(growth_at(0.1), 100.0, 1.0);
 }
 
 // Once grown, the errors are about as large as believed, in half of the rounds a little smaller.

@@ -227,7 +227,8 @@ TEST(SurfelMap, WhatCameJustBeforeMovesWithACorrection) {
     frame.map_from_base = blind ? drifted : truth;
     if (i > 0) {
       frame.slam_motion = Pose2{0.02, i == 24 ? 0.06 : 0.0, 0.0};
-      map.Corrected(blind || i == 26 ? drifted : truth, frame.map_from_base);
+      const Pose2 previous = frames.back().map_from_base;
+      map.Corrected(previous, i == 26 ? Pose2{previous.x_m, 0.0, 0.0} : previous);
     }
     map.Insert(scan, frame.map_from_base, Eigen::Matrix3d::Zero());
     frames.push_back(frame);
