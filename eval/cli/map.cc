@@ -13,11 +13,10 @@
 #include "eval/cli/map_settings.h"
 #include "eval/cli/pose_doubt_text.h"
 #include "eval/cli/video_output.h"
+#include "eval/cli/way_warnings.h"
 #include "eval/doubts/crossing_check.h"
 #include "eval/doubts/floor_check.h"
-#include "eval/doubts/mount_check.h"
 #include "eval/doubts/view_check.h"
-#include "eval/doubts/way_check.h"
 #include "eval/output/run_folder.h"
 #include "eval/report/run_report.h"
 #include "eval/run/mapping_run.h"
@@ -163,75 +162,6 @@ void CheckFloor(const MapArguments& arguments, const Sequence& sequence, const S
                   scan.floor_z_m, *seen_z_m));
 }
 
-// Warns of different scales of poses and map; which is wrong cannot be determined.
-void CheckScale(const MapArguments& arguments, const MappingRun& run,
-                std::vector<std::string>& warnings) {
-  const auto ways = ScaleDoubt(run);
-  if (!ways) return;
-  constexpr double kStandingM = 1e-3;  // allows for rounding
-  if (ways->slam_m < kStandingM) {
-    warnings.push_back(fmt::format("{}: the given poses do not move, but the map's go {:.1f} m",
-                                   arguments.input, ways->map_m));
-    return;
-  }
-  const char* fault = run.camera
-                          ? "the depth images' scale (depth_scale of the camera file) or SLAM's"
-                          : "the odometry's scale or the laser's";
-  warnings.push_back(fmt::format(
-      "{}: over the same stretches the given poses go {:.1f} m, the map's {:.1f} m: {} is wrong",
-      arguments.input, ways->slam_m, ways->map_m, fault));
-}
-
-// `found`: the actual laser pose relative to the stated one.
-std::string MountText(const LaserMount& stated, const Pose2& found) {
-  const Pose2 mount = stated.base_from_laser() * found;
-  const auto side = [](double value, const char* left, const char* right) {
-    return value < 0.0 ? right : left;
-  };
-  return fmt::format(
-      "the laser sits {:.2f} m {}, {:.2f} m to the {} and looks {:.0f} degrees to the {} of {}, "
-      "throughout: if they are the robot's, --set sequence.laser.mount.x_m={} --set "
-      "sequence.laser.mount.y_m={} --set sequence.laser.mount.yaw_deg={} says where on it the "
-      "laser is; or are the poses' headings or the scans' bearings counted from another axis?",
-      std::abs(found.x_m), side(found.x_m, "ahead", "behind"), std::abs(found.y_m),
-      side(found.y_m, "left", "right"), std::abs(DegFromRad(found.yaw_rad)),
-      side(found.yaw_rad, "left", "right"),
-      stated.base_from_laser() == Pose2{} ? "the given poses" : "where sequence.laser.mount has it",
-      Number(mount.x_m, 2), Number(mount.y_m, 2), Number(DegFromRad(mount.yaw_rad), 0));
-}
-
-// For laser logs: warns of disagreeing directions of odometry and scans.
-void CheckDirections(const MapArguments& arguments, const CarmenLogOptions& laser,
-                     const MappingRun& run, std::vector<std::string>& warnings) {
-  if (run.camera) return;
-  const auto fault = WayDoubt(run);
-  const auto scale = fault ? std::nullopt : TurnScaleDoubt(run);
-  if (scale) {
-    warnings.push_back(fmt::format(
-        "{}: where the odometry turns by 1 degree the map turns by {:.2f}: the scale of the "
-        "odometry's headings is wrong or that of the scans' angles (for FLASER "
-        "sequence.laser.fov_deg)",
-        arguments.input, *scale));
-  }
-  const bool may_be_mount = !scale && (!fault || *fault == WayFault::kDirections);
-  const auto mount = may_be_mount ? MountDoubt(run) : std::nullopt;
-  if (mount) warnings.push_back(arguments.input + ": " + MountText(laser.mount, *mount));
-  if (!fault || mount) return;
-  std::string what =
-      "the odometry goes other ways than the scans: are x and y swapped, or headings "
-      "counted from another axis than x?";
-  if (*fault == WayFault::kTurns) {
-    what = "the odometry's headings turn the other way than the scans: is their sign wrong?";
-  } else if (*fault == WayFault::kMirroredScans) {
-    what = fmt::format(
-        "the scans turn the other way than the odometry, so the map is mirrored: is the laser "
-        "{} --set sequence.laser.upside_down={}",
-        laser.upside_down ? "not mounted upside down?" : "mounted upside down?",
-        !laser.upside_down);
-  }
-  warnings.push_back(arguments.input + ": " + what);
-}
-
 // Warns of poses that were not checked by matches, because their map looks like any other.
 void CheckMatches(const MapArguments& arguments, const MapSettings& settings, const MappingRun& run,
                   std::vector<std::string>& warnings) {
@@ -308,8 +238,8 @@ std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest
   const std::vector<std::string> doubts = DoubtsOfSettings(given, request);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   // Misread poses differ in scale as well.
-  if (!input.pose_doubt) CheckScale(arguments, run, warnings);
-  CheckDirections(arguments, settings.sequence.laser, run, warnings);
+  if (!input.pose_doubt) CheckScale(arguments.input, input.depth_scale_per_m, run, warnings);
+  CheckDirections(arguments.input, settings.sequence.laser, run, warnings);
   CheckMatches(arguments, settings, run, warnings);
   if (!begin) return warnings;
   const auto doubt = DoubtOfPrior(arguments.map, settings.mapper, run.camera.has_value());

@@ -271,6 +271,11 @@ Sequence OpenSequence(const std::string& path, const SequenceOptions& options,
   const Eigen::Vector3d up = options.world_up == WorldUp::kAuto
                                  ? FindUp(path, options.recording, sequence, result)
                                  : AxisOf(options.world_up);
+  const auto& images = sequence.recording.images;
+  if (!images.empty() && images.front().depth_path.ends_with(".png")) {
+    result.depth_scale_per_m =
+        DepthFormatOf(sequence.recording.camera, options.recording).scale_per_m;
+  }
   SlamOutput level = Rotated(std::move(sequence.slam), LevelFromWorld(up));
   result.source = OpenRecording(std::move(sequence.recording), level, options.recording,
                                 std::move(sequence.reader));

@@ -29,6 +29,8 @@ struct Sequence {
   std::optional<double> floor_z_m;
   // The same as measured, also for a given axis. Empty if it may be a table.
   std::optional<double> seen_floor_z_m;
+  // Units a metre that its images were read with; empty where they are not PNG images.
+  std::optional<double> depth_scale_per_m;
   // SLAM's final poses, in the level world and the frames' clock; empty when unknown.
   Trajectory final_poses;
   // Set if the images fit the poses only under another reading.
