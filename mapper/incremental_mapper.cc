@@ -81,9 +81,26 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   FrameReport report;
   {
     const FrameTimer total(state_->clocks, report.times);  // writes the times on destruction
-    state_->Map(frame, report);
+    state_->Map(state_->Believed(frame), report);
   }
   return report;
+}
+
+// Without a pose that is held.
+Frame IncrementalMapper::State::Believed(const Frame& frame) {
+  Frame believed = frame;
+  if (!reference || !held.IsHeld(frame)) return believed;
+  believed.slam_from_camera.reset();
+  if (const FrameRecord* first = history.Find(held.first_frame())) TakeBackSince(*first);
+  return believed;
+}
+
+// SLAM's next motion begins at the first frame with the held pose: what the frames since were
+// matched by is no correction of it.
+void IncrementalMapper::State::TakeBackSince(const FrameRecord& first) {
+  if (!first.slam_from_camera || first.mapped < 0 || !history.newest().slam_from_camera) return;
+  const MappedFrame& frame = mapped.all()[static_cast<std::size_t>(first.mapped)];
+  filter.SetCorrection(frame.map_from_base * Inverse(BaseOf(*first.slam_from_camera)));
 }
 
 // The paper's Fig. 1.

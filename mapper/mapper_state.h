@@ -17,6 +17,7 @@
 #include "mapper/mapped_frames.h"
 #include "mapper/reference_factory.h"
 #include "mapper/scan/frame_scans.h"
+#include "mapper/scan/held_watch.h"
 #include "mapper/scan/moving_objects.h"
 #include "mapper/slip_search.h"
 
@@ -32,6 +33,7 @@ struct IncrementalMapper::State {
   FrameClocks clocks;
   GainOracle oracle;
   MatchOracle match_oracle;
+  HeldWatch held;
   FrameScanner scanner;
   MovingObjects moving;
   std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
@@ -83,6 +85,8 @@ struct IncrementalMapper::State {
     if (options.SearchesLoops()) loop_search.emplace(options.loops.search, options.loops.overlap);
   }
 
+  Frame Believed(const Frame& frame);
+  void TakeBackSince(const FrameRecord& first);
   void Map(const Frame& frame, FrameReport& report);
   void Begin(const Frame& frame, FrameReport& report);
   FrameScans ScansOf(const Frame& frame, FrameReport& report);

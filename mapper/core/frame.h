@@ -51,6 +51,10 @@ struct Frame {
   // its planar pose (x forward, y left) and back (mapper/core/level.h):
   //   frame.slam_from_camera = CameraOf(odom_from_laser);
   //   const Pose2 map_from_laser = BaseOf(*report.map_from_camera);
+  //
+  // A pose that repeats the last one bit for bit counts as empty once the scan or image shows that
+  // the sensor moves (mapper/scan/held_watch.h): many systems that are lost repeat their last pose.
+  // Not before the first pose that differs, as there may be no odometry.
   std::optional<Pose3> slam_from_camera;
   // Must change whenever SLAM corrects itself (loop closure, relocalisation): the difference of two
   // poses is a motion only within an epoch, and a jump taken for a motion bends the map

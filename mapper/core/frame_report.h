@@ -46,7 +46,8 @@ struct StageTimes {
 struct FrameReport {
   int index = 0;
   double stamp_s = 0.0;
-  std::optional<Pose3> slam_from_camera;  // the input
+  // The input; empty where it repeats a pose while the sensor moves (Frame::slam_from_camera).
+  std::optional<Pose3> slam_from_camera;
   int slam_epoch = 0;
   std::optional<Pose3> map_from_camera;  // the online estimate; empty while unknown
   // The correction after this frame, in the map as it is then: of the next pose of the same epoch.

@@ -1,11 +1,8 @@
 #include "mapper/io/held_frames.h"
 
 #include <algorithm>
-#include <cmath>
-#include <utility>
 
-#include "mapper/core/median.h"
-#include "mapper/io/held_motion.h"
+#include "mapper/core/view_change.h"
 #include "mapper/io/pose_runs.h"
 
 namespace depthgrid {
@@ -15,24 +12,12 @@ namespace {
 constexpr std::size_t kLeastFrames = 4;
 // A camera may be back where it was at the end: so many frames between are asked as well.
 constexpr std::size_t kProbes = 4;
-constexpr int kGridColumns = 40, kGridRows = 30;
-
-bool IsThere(float z_m) { return std::isfinite(z_m) && z_m > 0.0F; }
-
 // The median difference of depths at pixels that both images have; 0 if they are few.
 double DifferenceM(const DepthImage& a, const DepthImage& b) {
-  std::vector<double> differences_m;
-  if (a.width_px != b.width_px || a.height_px != b.height_px) return 0.0;
-  const int step_x = std::max(a.width_px / kGridColumns, 1);
-  const int step_y = std::max(a.height_px / kGridRows, 1);
-  for (int v = step_y / 2; v < a.height_px; v += step_y) {
-    for (int u = step_x / 2; u < a.width_px; u += step_x) {
-      const float z_a = a.Row(v)[u], z_b = b.Row(v)[u];
-      if (IsThere(z_a) && IsThere(z_b)) differences_m.push_back(std::abs(z_a - z_b));
-    }
-  }
-  return differences_m.size() < internal::kFewReadings ? 0.0
-                                                       : UpperMedian(std::move(differences_m));
+  ViewSample of_a, of_b;
+  of_a.Take(a);
+  of_b.Take(b);
+  return of_b.ChangeFromM(of_a);
 }
 
 // Frames of one pose, from the one whose pose is right: the first, or at the start the last.
@@ -47,10 +32,10 @@ class Run {
     std::shared_ptr<const DepthImage> next;
     for (std::size_t k = 1; k <= last && !next; ++k) next = image_(At(k));
     if (!right_ || !next) return last + 1;
-    const double moved_m = internal::kMovedM + internal::kTimesNoise * DifferenceM(*right_, *next);
+    const double moved_m = kViewMovedM + kTimesNoise * DifferenceM(*right_, *next);
     for (std::size_t probe = 1; probe <= kProbes; ++probe) {
       const std::size_t k = probe * last / kProbes;
-      if (k > 1 && SinceRightM(k) > moved_m) return FirstBeyond(internal::kBegunShare * moved_m, k);
+      if (k > 1 && SinceRightM(k) > moved_m) return FirstBeyond(kBegunShare * moved_m, k);
     }
     return last + 1;
   }

@@ -6,16 +6,11 @@
 
 #include "mapper/core/level.h"
 #include "mapper/core/median.h"
-#include "mapper/io/held_motion.h"
+#include "mapper/core/view_change.h"
 #include "mapper/io/pose_runs.h"
 
 namespace depthgrid {
 namespace {
-
-using internal::kBegunShare;
-using internal::kFewReadings;
-using internal::kMovedM;
-using internal::kTimesNoise;
 
 // The median difference of the readings that both have; 0 if they are few.
 double DifferenceM(const std::vector<double>& a_m, const std::vector<double>& b_m) {
@@ -59,7 +54,7 @@ void HeldPoses::Add(const OdometryPose& pose, std::vector<double> range_m, doubl
   } else {
     const double since_first_m = DifferenceM(first_m_, range_m);
     const double since_last_m = DifferenceM(last_m_, range_m);
-    const double moved_m = kMovedM + kTimesNoise * since_last_m;
+    const double moved_m = kViewMovedM + kTimesNoise * since_last_m;
     if (since_first_m < kBegunShare * moved_m) moved_from_ = scan + 1;
     if (moves_ && since_first_m > moved_m) {
       for (std::size_t i = moved_from_; i <= scan; ++i) held_[i] = true;

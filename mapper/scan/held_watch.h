@@ -1,0 +1,42 @@
+// Detects a pose that SLAM or odometry gives again and again, bit for bit, while the sensor moves:
+// a tracker that is lost, an encoder that was unplugged. Frame by frame; of a recording, whose next
+// poses are known, mapper/io/held_frames.h tells more.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+
+#include "mapper/core/frame.h"
+#include "mapper/core/view_change.h"
+
+namespace depthgrid {
+
+class HeldWatch {
+ public:
+  // Whether the frame's pose is held: it has been the same for more than twice as many frames as is
+  // usual, and what the frame shows has changed since the first of them by more than 2 cm and 1.5
+  // times the largest change from one of them to the next, which is noise and motion; until it has
+  // changed by less than half of that again. Never before the first pose that differs, as there may
+  // be no odometry. Somebody who fills the view of a standing robot has the same effect. Call once
+  // per frame, in order of time.
+  bool IsHeld(const Frame& frame);
+  // Frame::index of the first frame with this pose.
+  int first_frame() const { return first_frame_; }
+
+ private:
+  std::size_t UsualRun() const;
+
+  std::optional<Pose3> pose_;
+  int first_frame_ = -1;
+  std::size_t run_ = 0;  // frames with this pose
+  bool held_ = false;
+  double largest_step_m_ = 0.0;  // ViewSample::ChangeFromM() between successive ones of these
+  bool moves_ = false;           // a different pose occurred before
+  // How many frames had the last poses: more than one where poses are read more often than made.
+  std::array<std::size_t, 8> runs_ = {1, 1, 1, 1, 1, 1, 1, 1};
+  std::size_t poses_ = 0;
+  ViewSample first_, last_, now_;
+};
+
+}  // namespace depthgrid
