@@ -1,6 +1,9 @@
 #include "mapper/io/held_frames.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
 
 #include "mapper/core/view_change.h"
 #include "mapper/io/pose_runs.h"
@@ -10,6 +13,10 @@ namespace {
 
 // Fewer frames of one pose may be several images near one pose's stamp.
 constexpr std::size_t kLeastFrames = 4;
+// What differs by more than this and this many times what successive frames do, at least, has begun
+// to move.
+// Chosen: above what noise makes of it.
+constexpr double kUnmovedM = 0.01, kUnmovedTimes = 1.2;
 // A camera may be back where it was at the end: so many frames between are asked as well.
 constexpr std::size_t kProbes = 4;
 // The median difference of depths at pixels that both images have; 0 if they are few.
@@ -32,10 +39,11 @@ class Run {
     std::shared_ptr<const DepthImage> next;
     for (std::size_t k = 1; k <= last && !next; ++k) next = image_(At(k));
     if (!right_ || !next) return last + 1;
-    const double moved_m = kViewMovedM + kTimesNoise * DifferenceM(*right_, *next);
+    const double step_m = DifferenceM(*right_, *next);
+    const double moved_m = kViewMovedM + kTimesNoise * step_m;
     for (std::size_t probe = 1; probe <= kProbes; ++probe) {
       const std::size_t k = probe * last / kProbes;
-      if (k > 1 && SinceRightM(k) > moved_m) return FirstBeyond(kBegunShare * moved_m, k);
+      if (k > 1 && SinceRightM(k) > moved_m) return CountStanding(k);
     }
     return last + 1;
   }
@@ -45,6 +53,24 @@ class Run {
   double SinceRightM(std::size_t k) const {
     const auto there = image_(At(k));
     return there ? DifferenceM(*right_, *there) : 0.0;
+  }
+  // From the right one on, until the frames differ from it by more than noise. The right one alone
+  // if that is soon.
+  std::size_t CountStanding(std::size_t moved) const {
+    const double changed_m = kUnmovedM + kUnmovedTimes * LeastStepM();
+    const std::size_t standing = FirstBeyond(changed_m, moved);
+    return standing > kLeastFrames ? standing : 1;
+  }
+  // The least difference of the first successive frames: noise, if the camera stands.
+  double LeastStepM() const {
+    double least_m = std::numeric_limits<double>::infinity();
+    auto before = right_;
+    for (std::size_t k = 1; k <= kLeastFrames && k < end_ - begin_; ++k) {
+      auto here = image_(At(k));
+      if (before && here) least_m = std::min(least_m, DifferenceM(*before, *here));
+      before = std::move(here);
+    }
+    return std::isfinite(least_m) ? least_m : 0.0;
   }
   // Frames change more and more: bisects.
   std::size_t FirstBeyond(double change_m, std::size_t last) const {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kHeldTestFrames = 66;
 
-// The camera goes towards a wall at 2 cm a frame, or stands for its first 30 frames. Noise of 1 cm.
+// The camera goes towards a wall at 2 cm a frame, or stands until frame 30. Noise of 1 cm.
 ImageOfFrame ImagesTowardsAWall(bool stands_at_first = false) {
   return [=](std::size_t i) {
     auto image = std::make_shared<DepthImage>(64, 48);
@@ -41,10 +41,19 @@ TEST(HeldFrames, AreThoseWhoseImagesMoveOn) {
   const std::vector<bool> held =
       HeldFrames(PosesHeld(20, 40), 0, kHeldTestFrames, ImagesTowardsAWall());
   for (std::size_t i = 0; i < kHeldTestFrames; ++i) {
-    if (i <= 20 || i >= 40) {
+    EXPECT_EQ(held[i], i > 20 && i < 40) << i;
+  }
+}
+
+// Its first frames show no motion yet, so their pose is right.
+TEST(HeldFrames, AreNotThoseOfAStandBefore) {
+  const std::vector<bool> held =
+      HeldFrames(PosesHeld(20, 50), 0, kHeldTestFrames, ImagesTowardsAWall(true));
+  for (std::size_t i = 0; i < kHeldTestFrames; ++i) {
+    if (i <= 30 || i >= 50) {
       EXPECT_FALSE(held[i]) << i;
     }
-    if (i >= 24 && i < 40) {
+    if (i >= 33 && i < 50) {
       EXPECT_TRUE(held[i]) << i;
     }
   }
@@ -66,12 +75,7 @@ TEST(HeldFrames, AtTheStartAreThoseBeforeTheLast) {
   const std::vector<bool> held =
       HeldFrames(PosesHeld(0, 30), 0, kHeldTestFrames, ImagesTowardsAWall());
   for (std::size_t i = 0; i < kHeldTestFrames; ++i) {
-    if (i < 25) {
-      EXPECT_TRUE(held[i]) << i;
-    }
-    if (i >= 29) {
-      EXPECT_FALSE(held[i]) << i;
-    }
+    EXPECT_EQ(held[i], i < 29) << i;
   }
 }
 
