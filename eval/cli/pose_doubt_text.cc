@@ -46,15 +46,14 @@ std::string AxesOf(const Eigen::Matrix3d& camera_from_own) {
   return text;
 }
 
-// Smaller uncertainties of the time offset are not mentioned: a slow camera moves a centimetre in
-// it.
-constexpr double kSureOfTimeS = 0.04;
+// Smaller uncertainties of the time offset are not shown.
+constexpr double kSureOfTimeS = 0.0005;
 
 std::string OffsetRemedyOf(const PoseDoubt& doubt) {
   const std::string setting = fmt::format(
-      "with other stamps: --set sequence.recording.time_offset_s={:.2f}", doubt.time_offset_s);
+      "with other stamps: --set sequence.recording.time_offset_s={:.3f}", doubt.time_offset_s);
   if (doubt.time_unsure_s < kSureOfTimeS) return setting;
-  return fmt::format("{}, {:.2f} s more or less fit as well", setting, doubt.time_unsure_s);
+  return fmt::format("{}, {:.3f} s more or less fit as well", setting, doubt.time_unsure_s);
 }
 
 std::string KeptText(const std::optional<KeptDepth>& kept) {

@@ -291,6 +291,18 @@ bool AllAlike(const std::vector<SlamPose>& live, double (*apart)(const Pose3&, c
   return true;
 }
 
+// The offset that the coarse search found prefers stamps between two poses, whose mean is less
+// noisy; this is found without that, and says how sure it is.
+PoseDoubt Refined(PoseDoubt doubt, const PoseFits& fits, const PinholeCamera& camera,
+                  const std::vector<SlamPose>& live, const RecordingOptions& options) {
+  const double coarse_s = doubt.time_offset_s - options.time_offset_s;
+  const auto fine = FineShiftAround(fits, camera, live, coarse_s);
+  if (!fine) return doubt;
+  doubt.time_offset_s = options.time_offset_s + fine->shift_s;
+  doubt.time_unsure_s = std::max(fine->sigma_s, doubt.time_unsure_s);
+  return doubt;
+}
+
 // The result for poses that fit the images in no reading.
 PoseDoubt Unread(PoseDoubt doubt, const std::vector<SlamPose>& live,
                  const std::vector<ImagePair>& pairs) {
@@ -337,7 +349,10 @@ std::optional<PoseDoubt> DoubtOfPoses(const std::vector<ImagePair>& pairs,
   const double changed_as_given = fits.WhereShared({AsGiven, camera}, PairPoints::kChanged);
   if (doubt.better_misfit < std::min(kMostFitting, kClearlyBetter * *as_given)) {
     const double changed = fits.WhereShared(best.attempt(), PairPoints::kChanged);
-    if (changed < kClearlyBetter * changed_as_given) return doubt;
+    if (changed < kClearlyBetter * changed_as_given) {
+      return doubt.reading == PoseReading::kShifted ? Refined(doubt, fits, camera, live, options)
+                                                    : doubt;
+    }
     return slight();
   }
   const double as_given_shared = fits.WhereShared({AsGiven, camera}, PairPoints::kAll);

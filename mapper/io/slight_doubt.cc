@@ -28,10 +28,10 @@ constexpr int kFactorSteps = 18;
 // jumps.
 constexpr int kFactorReach = 3;
 // In frames. Half a frame off, poses are the mean of two, whose noise is smaller: whole frames
-// only.
+// only, and what would be left at the least is read off the parabola.
 constexpr double kLeastFrames = 1.0 / 3.0;
 constexpr int kFrameSteps = 8;
-constexpr int kFrameReach = 2;
+constexpr int kFrameReach = 1;  // farther ones would make the least jump between two frames
 // With poses farther apart than this (slower than 10 Hz, a little jitter allowed) a time offset is
 // not sought: between them poses are only interpolated.
 constexpr double kMostFrameS = 0.11;
@@ -42,6 +42,7 @@ struct Sought {
   int steps = 0;
   int reach = 0;  // of the parabola, in steps
   std::function<PoseAttempt(double)> attempt_of;
+  bool from_parabola = false;  // whether its least tells the misfit, if that is less
 };
 
 // The least error that is told, and the most misfit that it leaves.
@@ -74,9 +75,13 @@ std::vector<Misfits> MisfitsOf(const PoseFits& fits, const Sought& sought) {
   return kept;
 }
 
-// Where the sum of misfits is least, in steps from the first attempt; nothing where it has no
-// minimum.
-std::optional<double> LeastAt(const std::vector<double>& sums, int reach) {
+struct Least {
+  double at = 0.0;  // in steps from the first attempt
+  double sum = 0.0;
+};
+
+// Where the sum of misfits is least; nothing where it has no minimum.
+std::optional<Least> LeastOf(const std::vector<double>& sums, int reach) {
   const auto least = std::min_element(sums.begin(), sums.end()) - sums.begin();
   if (least < reach || least + reach >= static_cast<std::ptrdiff_t>(sums.size())) return {};
   const auto at = static_cast<std::size_t>(least);
@@ -84,7 +89,8 @@ std::optional<double> LeastAt(const std::vector<double>& sums, int reach) {
   const double before = sums[at - apart], after = sums[at + apart];
   const double bend = before - 2.0 * sums[at] + after;
   if (!(bend > 0.0)) return {};
-  return static_cast<double>(least) + 0.5 * reach * (before - after) / bend;
+  return Least{static_cast<double>(least) + 0.5 * reach * (before - after) / bend,
+               sums[at] - (after - before) * (after - before) / (8.0 * bend)};
 }
 
 // With the jackknife's standard deviation: each group of pairs left out in turn.
@@ -96,8 +102,8 @@ std::optional<Found> Find(const PoseFits& fits, const Sought& sought) {
   for (const Misfits& of_attempt : misfits) {
     sums.push_back(std::accumulate(of_attempt.begin(), of_attempt.end(), 0.0));
   }
-  const auto at = LeastAt(sums, sought.reach);
-  if (!at) return {};
+  const auto least = LeastOf(sums, sought.reach);
+  if (!least) return {};
   double squares = 0.0;
   for (std::size_t group = 0; group < kGroups; ++group) {
     std::vector<double> without = sums;
@@ -107,16 +113,20 @@ std::optional<Found> Find(const PoseFits& fits, const Sought& sought) {
         without[k] -= misfits[k][pair];
       }
     }
-    const auto at_without = LeastAt(without, sought.reach);
-    if (!at_without) return {};
-    squares += (*at_without - *at) * (*at_without - *at);
+    const auto least_without = LeastOf(without, sought.reach);
+    if (!least_without) return {};
+    const double off = least_without->at - least->at;
+    squares += off * off;
   }
   constexpr double kShare = 1.0 - 1.0 / static_cast<double>(kGroups);
   Found found;
-  found.error = (*at - sought.steps) * sought.step;
+  found.error = (least->at - sought.steps) * sought.step;
   found.sigma = sought.step * std::sqrt(kShare * squares);
   found.misfit =
       fits.Mean(sought.attempt_of(found.error), PoseFits::kLeastPairs).value_or(kNothingShared);
+  if (sought.from_parabola) {
+    found.misfit = std::min(found.misfit, least->sum / static_cast<double>(pairs));
+  }
   return found;
 }
 
@@ -137,13 +147,26 @@ Sought ScaleOf(const PinholeCamera& camera) {
           }};
 }
 
-Sought ShiftOf(const PinholeCamera& camera, double frame_s) {
-  return {frame_s, kFrameSteps, kFrameReach, [&camera](double shift_s) {
-            return PoseAttempt{Unchanged, camera, shift_s};
-          }};
+Sought ShiftOf(const PinholeCamera& camera, double frame_s, double around_s = 0.0) {
+  return {frame_s, kFrameSteps, kFrameReach,
+          [&camera, around_s](double shift_s) {
+            return PoseAttempt{Unchanged, camera, around_s + shift_s};
+          },
+          true};
 }
 
+bool SeeksShift(double frame_s) { return frame_s > 0.0 && frame_s <= kMostFrameS; }
+
 }  // namespace
+
+std::optional<FineShift> FineShiftAround(const PoseFits& fits, const PinholeCamera& camera,
+                                         const std::vector<SlamPose>& live, double around_s) {
+  const double frame_s = UsualStepBetween(live, &SlamPose::stamp_s);
+  if (!SeeksShift(frame_s)) return {};
+  const auto found = Find(fits, ShiftOf(camera, frame_s, around_s));
+  if (!found) return {};
+  return FineShift{around_s + found->error, found->sigma};
+}
 
 std::optional<PoseDoubt> SlightDoubtOf(const PoseFits& fits, const PinholeCamera& camera,
                                        const std::vector<SlamPose>& live,
@@ -174,7 +197,7 @@ std::optional<PoseDoubt> SlightDoubtOf(const PoseFits& fits, const PinholeCamera
   seek(FocalOf(camera), {kLeastLogFactor, kMostLeft}, factor(PoseReading::kFocal));
   seek(ScaleOf(camera), {kLeastLogFactor, kMostLeft}, factor(PoseReading::kScaled));
   const double frame_s = UsualStepBetween(live, &SlamPose::stamp_s);
-  if (!(frame_s > 0.0) || frame_s > kMostFrameS) return best;
+  if (!SeeksShift(frame_s)) return best;
   seek(ShiftOf(camera, frame_s), {kLeastFrames * frame_s, PoseFits::kMostMisfit},
        [&](double shift_s) {
          PoseDoubt doubt;

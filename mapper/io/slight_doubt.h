@@ -20,4 +20,14 @@ std::optional<PoseDoubt> SlightDoubtOf(const PoseFits& fits, const PinholeCamera
                                        const std::vector<SlamPose>& live,
                                        const RecordingOptions& options);
 
+// A shift of the poses' stamps, with its standard deviation.
+struct FineShift {
+  double shift_s = 0.0;
+  double sigma_s = 0.0;
+};
+// The one that fits best, sought some frames to either side of `around_s`. Nothing with poses
+// slower than 10 Hz, too few pairs or no least misfit there.
+std::optional<FineShift> FineShiftAround(const PoseFits& fits, const PinholeCamera& camera,
+                                         const std::vector<SlamPose>& live, double around_s);
+
 }  // namespace depthgrid

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
+#include "mapper/core/rng.h"
 #include "mapper/io/pose_check.h"
 #include "tests/io/posed_pairs.h"
 
@@ -38,6 +41,33 @@ TEST(SlightDoubt, NamesSlightlyWrongDepthAndStamps) {
   ASSERT_TRUE(shifted);
   EXPECT_EQ(shifted->reading, PoseReading::kShifted);
   EXPECT_NEAR(shifted->time_offset_s, 1.1, 0.02);
+}
+
+// Each pose errs by itself, by 4 mm and 2 mrad.
+PoseChange Jittering() {
+  const auto random = std::make_shared<RandomStream>(7, RandomStage::kTest);
+  return [random](const Pose3& pose) {
+    Pose3 given = pose;
+    for (int axis = 0; axis < 3; ++axis) {
+      given.translation[axis] += 0.004 * random->Normal();
+      given.rotation =
+          given.rotation * Eigen::AngleAxisd(0.002 * random->Normal(), Eigen::Vector3d::Unit(axis));
+    }
+    return given;
+  };
+}
+
+// Halfway between two poses their mean jitters less than the pose that fits.
+TEST(SlightDoubt, NamesStampsThatLieBetweenPosesThatJitter) {
+  const std::vector<ImagePair> pairs = PosedPairs(0.002);
+  EXPECT_FALSE(DoubtOfPoses(pairs, kPairsCamera, GivenPoses(Jittering()), {}));
+  for (const double frames : {-2.5, -1.5, -0.75, 0.75, 1.5, 2.5}) {
+    const double ahead_s = frames * kPairsFrameS;
+    const auto doubt = DoubtOfPoses(pairs, kPairsCamera, GivenPoses(Jittering(), ahead_s), {});
+    ASSERT_TRUE(doubt) << frames;
+    EXPECT_EQ(doubt->reading, PoseReading::kShifted) << frames;
+    EXPECT_NEAR(doubt->time_offset_s, ahead_s, 0.3 * kPairsFrameS) << frames;
+  }
 }
 
 // SLAM's own errors over a few seconds look like a wrong focal length, but leave a large misfit.
