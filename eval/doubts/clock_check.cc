@@ -61,6 +61,26 @@ class Clocks {
     return AlignedMisfit(pairs).value_or(kNoFit);
   }
 
+  // The same over twelve stretches, each aligned by itself; empty where none can be.
+  std::optional<double> MisfitOfStretches(double offset_s, double other_offset_s) const {
+    constexpr std::size_t kStretches = 12;
+    const std::vector<PosePair> pairs = PairsAt(offset_s, other_offset_s);
+    double squares = 0.0;
+    std::size_t poses = 0;
+    for (std::size_t k = 0; k < kStretches; ++k) {
+      const auto at = [&](std::size_t i) {
+        return pairs.begin() + static_cast<std::ptrdiff_t>(i * pairs.size() / kStretches);
+      };
+      const std::vector<PosePair> stretch(at(k), at(k + 1));
+      const auto misfit_m = AlignedMisfit(stretch);
+      if (!misfit_m) continue;
+      squares += static_cast<double>(stretch.size()) * *misfit_m * *misfit_m;
+      poses += stretch.size();
+    }
+    if (poses == 0) return {};
+    return std::sqrt(squares / static_cast<double>(poses));
+  }
+
   struct Best {
     double offset_s = 0.0;
     double unsure_s = 0.0;
@@ -147,9 +167,11 @@ std::optional<ClockOffset> FindClockOffset(const Trajectory& reference,
   found.better_misfit_m = clocks.Misfit(found.offset_s, 0.0);
   found.misfit_m = clocks.Misfit(0.0, found.offset_s);
   if (!std::isfinite(found.better_misfit_m) || !std::isfinite(found.misfit_m)) return std::nullopt;
-  const double gain_m = found.misfit_m - found.better_misfit_m;
-  const bool is_better = found.better_misfit_m < kBetter * found.misfit_m;
-  return is_better && gain_m > kLeastGainM ? std::optional(found) : std::nullopt;
+  if (found.misfit_m - found.better_misfit_m <= kLeastGainM) return std::nullopt;
+  if (found.better_misfit_m >= kBetter * found.misfit_m) return std::nullopt;
+  const auto better = clocks.MisfitOfStretches(found.offset_s, 0.0);
+  const auto as_given = clocks.MisfitOfStretches(0.0, found.offset_s);
+  return better && as_given && *better < *as_given ? std::optional(found) : std::nullopt;
 }
 
 }  // namespace depthgrid

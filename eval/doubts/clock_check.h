@@ -18,8 +18,10 @@ struct ClockOffset {
 };
 
 // The offset with which the misfit is less than 0.7 times that without (on recorded and simulated
-// runs fitting drift alone gave 0.8 or more). Empty where there is none, as for a straight line at
-// constant speed, which fits with any offset.
+// runs fitting drift alone gave 0.8 or more), and with which twelve stretches, each aligned by
+// itself, fit better as well: an estimate that is bent may as a whole fit better with an offset,
+// but its stretches do not (docs/tried.md, "Late or bent"). Empty where there is none, as for a
+// straight line at constant speed, which fits with any offset.
 std::optional<ClockOffset> FindClockOffset(const Trajectory& reference, const Trajectory& estimate);
 
 }  // namespace depthgrid

@@ -58,6 +58,46 @@ std::optional<double> ImagesASecond(const FrameNames& names,
   return RateBesideNumbers(names.stamps_s, pose_stamps_s.back() - pose_stamps_s.front());
 }
 
+// The gap that spans nineteen in twenty steps between the poses, rounded up to 10 ms; nothing if
+// that is too long to say where the camera went meanwhile, or spanned already.
+std::optional<double> GapNeededS(const std::vector<double>& pose_stamps_s, double spanned_s) {
+  constexpr double kMostS = 2.0;  // chosen, not measured
+  constexpr double kShare = 0.95, kUnitS = 0.01;
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < pose_stamps_s.size(); ++i) {
+    steps_s.push_back(pose_stamps_s[i] - pose_stamps_s[i - 1]);
+  }
+  if (steps_s.empty()) return {};
+  const auto at = static_cast<std::ptrdiff_t>(kShare * static_cast<double>(steps_s.size() - 1));
+  std::nth_element(steps_s.begin(), steps_s.begin() + at, steps_s.end());
+  const double step_s = steps_s[static_cast<std::size_t>(at)];
+  if (step_s <= spanned_s || step_s > kMostS) return {};
+  return kUnitS * std::ceil(step_s / kUnitS);
+}
+
+std::string InterpolationRemedy(const FrameNames& names, const std::vector<double>& pose_stamps_s) {
+  const double spanned_s =
+      names.interpolated_gap_s.value_or(RecordingOptions{}.max_interpolation_gap_s);
+  const auto needed_s = GapNeededS(pose_stamps_s, spanned_s);
+  if (names.interpolated_gap_s) {
+    return fmt::format(
+        "poses more than {:g} s apart are not interpolated, --set "
+        "sequence.recording.max_interpolation_gap_s={}",
+        spanned_s,
+        needed_s ? fmt::format("{:.2f} interpolates most of them", *needed_s)
+                 : "S interpolates those up to S apart");
+  }
+  if (needed_s) {
+    return fmt::format(
+        "--set sequence.recording.interpolate_poses=true --set "
+        "sequence.recording.max_interpolation_gap_s={:.2f} interpolates poses up to that apart, "
+        "for a camera that moves smoothly between them",
+        *needed_s);
+  }
+  return "--set sequence.recording.interpolate_poses=true interpolates poses up to "
+         "max_interpolation_gap_s apart, for a camera that moves smoothly between them";
+}
+
 std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_stamps_s) {
   if (const auto rate_hz = PosesASecond(names, pose_stamps_s)) {
     return fmt::format(
@@ -86,14 +126,7 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
         "--set sequence.recording.time_offset_s={:.3f} makes the first of both coincide", offset_s);
   }
   if (!overlap(PartBeginS(names), PartEndS(names))) return "none are of the part";
-  if (names.interpolated_gap_s) {
-    return fmt::format(
-        "poses more than {:g} s apart are not interpolated, --set "
-        "sequence.recording.max_interpolation_gap_s=S interpolates those up to S apart",
-        *names.interpolated_gap_s);
-  }
-  return "--set sequence.recording.interpolate_poses=true interpolates poses up to "
-         "max_interpolation_gap_s apart, for a camera that moves smoothly between them";
+  return InterpolationRemedy(names, pose_stamps_s);
 }
 
 }  // namespace
@@ -101,6 +134,17 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
 bool AreOfOtherUnits(double span_s, double other_span_s) {
   const auto [least_s, most_s] = std::minmax({span_s, other_span_s});
   return least_s > 0.0 && most_s > kMostSpanRatio * least_s;
+}
+
+bool LacksEachSecondPose(const std::vector<bool>& has_pose) {
+  std::size_t lacking = 0, between = 0;
+  for (std::size_t i = 0; i < has_pose.size(); ++i) {
+    if (has_pose[i]) continue;
+    ++lacking;
+    const bool is_between = i > 0 && i + 1 < has_pose.size() && has_pose[i - 1] && has_pose[i + 1];
+    between += is_between ? 1 : 0;
+  }
+  return lacking > 0 && 5 * lacking >= 2 * has_pose.size() && 2 * between > lacking;
 }
 
 std::string StampRanges(const FrameNames& names, const std::vector<double>& pose_stamps_s) {

@@ -45,6 +45,10 @@ inline bool MostLackPoses(std::size_t with_pose, std::size_t frames) {
   return 2 * with_pose < frames;
 }
 
+// Whether two frames in five or more lack a pose, most of these between two frames that have one:
+// poses come half as often as images.
+bool LacksEachSecondPose(const std::vector<bool>& has_pose);
+
 // The part as "frames 300 to 599 of 900, 10.000 to 19.967 s of 29.967".
 std::string PartShown(const FrameNames& names);
 

@@ -32,7 +32,8 @@ enum class PoseReading {
 struct PoseDoubt {
   PoseReading reading = PoseReading::kWFirst;  // the reading with which the images fit
   double time_offset_s = 0.0;                  // the RecordingOptions::time_offset_s that fits
-  double time_unsure_s = 0.0;                  // offsets this much to either side fit equally
+  // Offsets this much to either side fit equally, or its standard deviation if that is more.
+  double time_unsure_s = 0.0;
   // The factor of the poses' positions (kScaled), of the focal lengths (kFocal) or of all four
   // intrinsics (kImageSize) that fits the images.
   double scale = 1.0;

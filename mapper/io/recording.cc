@@ -169,7 +169,12 @@ class RecordingSource final : public FrameSource {
                          std::size_t with_pose) const {
     const bool by_frame = std::any_of(slam.live.begin(), slam.live.end(),
                                       [](const SlamPose& pose) { return !pose.slam_from_camera; });
-    if (by_frame || !MostLackPoses(with_pose, ImagesOfPart(recording_).size())) return "";
+    if (by_frame) return "";
+    std::vector<bool> has_pose;
+    for (std::size_t i = recording_.part.begin; i < EndOfPart(); ++i) {
+      has_pose.push_back(poses_[i].slam_from_camera.has_value());
+    }
+    if (!MostLackPoses(with_pose, has_pose.size()) && !LacksEachSecondPose(has_pose)) return "";
     return ": " + Ranges(slam, options);
   }
   std::string Ranges(const SlamOutput& slam, const RecordingOptions& options) const {

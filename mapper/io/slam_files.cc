@@ -56,17 +56,17 @@ InputError NoSharedStamps(const std::string& path, double max_difference_s,
 }
 
 // Warns if few frames have a pose: the poses may have another clock or unit or be of another
-// recording.
+// recording; or if each second has none.
 void WarnOfFew(std::size_t with_pose, const FrameNames& frames, const Trajectory& poses,
-               const std::string& path, std::vector<std::string>& warnings) {
+               const std::string& path, bool each_second, std::vector<std::string>& warnings) {
   const std::size_t count = frames.CountInPart();
-  if (!MostLackPoses(with_pose, count)) return;
+  if (!MostLackPoses(with_pose, count) && !each_second) return;
   warnings.push_back(fmt::format("{}: gives {} of {} frames a pose: {}", path, with_pose, count,
                                  RangesOf(frames, poses)));
 }
 
 // Assigns poses to input frames, to each the nearest. Poses without a frame are counted in the
-// warnings; throws InputError if all are without.
+// warnings.
 std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const FrameNames& frames,
                                      double max_difference_s, const std::string& path,
                                      std::vector<std::string>& warnings) {
@@ -90,9 +90,6 @@ std::vector<FramedPose> PosesByFrame(const Trajectory& poses, const FrameNames& 
     }
     ++doubled;
     if (distance_s(found) < distance_s(framed.back())) framed.back() = found;
-  }
-  if (framed.empty() && !stamps_s.empty()) {
-    throw NoSharedStamps(path, max_difference_s, frames, poses);
   }
   const auto warn = [&](int count, const char* thing, const char* what) {
     WarnOfCount(warnings, path, count, thing, what);
@@ -248,26 +245,36 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   std::vector<std::string> unsaid;  // dropped: poses of no frame are needed for interpolation
   const auto framed = PosesByFrame(live, frames, max_difference_s, paths.live,
                                    reading.interpolate ? unsaid : input.warnings);
+  const auto require = [&](bool any, const std::string& path, const Trajectory& poses) {
+    if (!any && !frames.stamps_s.empty()) {
+      throw NoSharedStamps(path, max_difference_s, frames, poses);
+    }
+  };
+  if (!reading.interpolate) require(!framed.empty(), paths.live, live);
   slam.live = LivePoses(framed, events.events, frames.stamps_s);
   slam.final = live;
   if (!paths.final.empty()) {
     slam.final = ReadPoseFile(paths.final, frames, input.warnings);
     const auto revised =
         PosesByFrame(slam.final, frames, max_difference_s, paths.final, input.warnings);
+    require(!revised.empty(), paths.final, slam.final);
     const auto of_part = std::count_if(revised.begin(), revised.end(), [&](const FramedPose& pose) {
       return frames.part.Has(pose.frame);
     });
-    WarnOfFew(static_cast<std::size_t>(of_part), frames, slam.final, paths.final, input.warnings);
+    WarnOfFew(static_cast<std::size_t>(of_part), frames, slam.final, paths.final, false,
+              input.warnings);
   }
   const bool epochs_known = events.kind == kOwnEvents;
   FindCorrections(paths, epochs_known, frames.part, input);
   KeepLoopsOf(frames.part, input);
   if (reading.interpolate) Interpolate(live, reading, slam.live);
   const std::size_t posed = PosedOf(frames.part, slam.live);
-  if (posed == 0 && !frames.stamps_s.empty()) {
-    throw NoSharedStamps(paths.live, max_difference_s, frames, live);
+  require(posed > 0, paths.live, live);
+  std::vector<bool> has_pose;
+  for (std::size_t i = frames.part.begin; i < frames.part.EndAmong(slam.live.size()); ++i) {
+    has_pose.push_back(slam.live[i].slam_from_camera.has_value());
   }
-  WarnOfFew(posed, frames, live, paths.live, input.warnings);
+  WarnOfFew(posed, frames, live, paths.live, LacksEachSecondPose(has_pose), input.warnings);
   return input;
 }
 

@@ -206,6 +206,29 @@ TEST(ClockCheck, DriftIsNoOffset) {
   }
 }
 
+// The Eight with headings that err by up to so much, one way and back.
+Trajectory Bent(double size_rad) {
+  const Trajectory truth = Eight();
+  Trajectory bent = {truth.front()};
+  for (std::size_t i = 1; i < truth.size(); ++i) {
+    const Pose3& last = truth[i - 1].world_from_camera;
+    const Pose3& next = truth[i].world_from_camera;
+    const double turn_rad = size_rad * std::cos(2.0 * kPi * static_cast<double>(i) / 400.0);
+    const Eigen::Quaterniond turn(Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()));
+    const Eigen::Vector3d at =
+        bent.back().world_from_camera.translation + turn * (next.translation - last.translation);
+    bent.push_back({truth[i].stamp_s, {turn * next.rotation, at}});
+  }
+  return bent;
+}
+
+// As a whole it fits better half a second and more earlier or later, its stretches do not.
+TEST(ClockCheck, ABentEstimateIsNotLate) {
+  for (const double size_rad : {-0.7, -0.4, -0.2, 0.2, 0.4, 0.7}) {
+    EXPECT_FALSE(FindClockOffset(Eight(), Bent(size_rad))) << size_rad;
+  }
+}
+
 // A laser ahead of its robot's base that looks to the left: laid over each other by their
 // positions, the paths lie turned.
 TEST(LeverCheck, TheArmIsNoPartOfTheRotation) {

@@ -291,9 +291,10 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.3, 1.0)}),
               ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
                                     "poses from 0.000 to 0.300 s; --set "
-                                    "sequence.recording.interpolate_poses=true interpolates poses "
-                                    "up to max_interpolation_gap_s apart, for a camera that moves "
-                                    "smoothly between them"));
+                                    "sequence.recording.interpolate_poses=true --set "
+                                    "sequence.recording.max_interpolation_gap_s=0.30 interpolates "
+                                    "poses up to that apart, for a camera that moves smoothly "
+                                    "between them"));
   RecordingOptions interpolate;
   interpolate.interpolate_poses = true;
   const Trajectory sparse = {PoseAt(0.0, 0.0), PoseAt(0.3, 1.0)};
@@ -301,10 +302,14 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
               ElementsAre(folder_ + ": 3 of 4 frames have no pose: images from 0.000 to 0.375 s, "
                                     "poses from 0.000 to 0.300 s; poses more than 0.2 s apart "
                                     "are not interpolated, --set "
-                                    "sequence.recording.max_interpolation_gap_s=S interpolates "
-                                    "those up to S apart"));
+                                    "sequence.recording.max_interpolation_gap_s=0.30 "
+                                    "interpolates most of them"));
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.125, 1.0)}),
               ElementsAre(folder_ + ": 2 of 4 frames have no pose"));
+  // Poses at half the images' rate.
+  EXPECT_TRUE(LacksEachSecondPose({true, false, true, false, true, false}));
+  EXPECT_FALSE(LacksEachSecondPose({true, true, true, false, false, false}));
+  EXPECT_FALSE(LacksEachSecondPose({true, true, true, false, true, true}));
 }
 
 TEST_F(TumFolderTest, UnitsOfDepthAreChecked) {
