@@ -70,6 +70,14 @@ const FrameRecord* FrameHistory::Find(int frame_index) const {
   return &records_[found->second];
 }
 
+void FrameHistory::Unmap(int first_frame_index, const Pose2& motion) {
+  const auto first = static_cast<std::size_t>(Find(first_frame_index) - records_.data());
+  for (std::size_t i = first; i < records_.size(); ++i) {
+    records_[i].map_from_slam = motion * records_[i].map_from_slam;
+    records_[i].mapped = -1;
+  }
+}
+
 const FrameRecord* FrameHistory::PosedBefore(const FrameRecord& record) const {
   for (std::size_t i = PlaceOf(record.index)->second; i-- > 0;) {
     if (records_[i].slam_from_camera) return &records_[i];

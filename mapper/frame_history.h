@@ -32,6 +32,9 @@ class FrameHistory {
   // Makes the newest frame begin an epoch: its pose minus the previous one is no motion.
   void BeginEpoch() { records_.back().epoch = epochs_.BeginAtLast(); }
 
+  // Moves the corrections of this frame and of all since, and makes them frames not mapped.
+  void Unmap(int first_frame_index, const Pose2& motion);
+
   const std::vector<FrameRecord>& records() const { return records_; }
   const FrameRecord& newest() const { return records_.back(); }
   FrameRecord& newest() { return records_.back(); }

@@ -55,25 +55,28 @@ void IncrementalMapper::StartFrom(PriorMap prior) {
                                       " frames, mapper.submap.scans is " + std::to_string(scans) +
                                       ", must be at least as many with mapper.method paper");
   }
-  for (std::size_t i = 0; i < prior.frames.size(); ++i) {
-    MappedFrame& frame = prior.frames[i];
-    // SLAM's motion is replaced by that of the final poses, without SLAM's errors.
-    if (i > 0) {
-      frame.slam_motion = Between(prior.frames[i - 1].map_from_base, frame.map_from_base);
-    }
-    if (state_->reference) {
-      state_->reference->Insert(std::make_shared<const Scan>(*frame.scan), frame.map_from_base,
-                                Eigen::Matrix3d::Zero());
-    }
+  // SLAM's motion is replaced by that of the final poses, without SLAM's errors.
+  for (std::size_t i = 1; i < prior.frames.size(); ++i) {
+    prior.frames[i].slam_motion =
+        Between(prior.frames[i - 1].map_from_base, prior.frames[i].map_from_base);
   }
-  // Only the match determines the pose of the first new frame relative to the last prior one.
-  if (state_->reference) state_->reference->BeginPart(PartPlace::kKnown);
   state_->has_prior = true;
   state_->prior_frames = static_cast<int>(prior.frames.size());
   state_->mapped.StartFrom(std::move(prior.frames));
+  state_->InsertPrior();
   state_->fixed_map = prior.fixed;
   state_->prior_start = prior.map_from_slam;
   state_->beginning.End();  // in a finished map, SLAM's errors are corrected from the start
+}
+
+void IncrementalMapper::State::InsertPrior() {
+  if (!reference) return;
+  for (const MappedFrame& frame : mapped.all()) {
+    reference->Insert(std::make_shared<const Scan>(*frame.scan), frame.map_from_base,
+                      Eigen::Matrix3d::Zero());
+  }
+  // Only the match determines the pose of the first new frame relative to the last prior one.
+  reference->BeginPart(PartPlace::kKnown);
 }
 
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
@@ -128,6 +131,7 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
   Relocate(scans, report);
   FindLoops(scans, report);
   report.guessed = relocation.unsettled();
+  if (fixed_map) report.inserted = report.well_seen = false;
 }
 
 void IncrementalMapper::State::Begin(const Frame& frame, FrameReport& report) {
@@ -165,7 +169,7 @@ void IncrementalMapper::State::CloseLoops(const Frame& frame, const FrameScans& 
                                           FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
   if (!reference) return;
-  if (mapped.empty() || mapped.back().of_prior_map()) {
+  if (mapped.empty() || mapped.back().of_prior_map() || fixed_map) {
     report.loops_rejected = static_cast<int>(frame.loops.size());
     return;
   }
@@ -208,9 +212,12 @@ std::optional<MotionSpread> IncrementalMapper::State::AdjustBetweenFrames() {
 
 // The first scan after a loss, or a pause, decides whether the guess is doubted.
 void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
-  if (!reference || fixed_map || mapped.empty()) return;
+  if (!reference || mapped.empty()) return;
   if (history.WasLost() || history.HadPause()) {
     const FrameRecord& before = *history.PosedBefore(history.newest());
+    if (fixed_map && !relocation.unsettled()) {
+      relocation.LastKnownAt(before.map_from_slam * BaseOf(*before.slam_from_camera));
+    }
     const Pose2 step =
         Between(BaseOf(*before.slam_from_camera), BaseOf(*history.newest().slam_from_camera));
     const double duration_s = report.stamp_s - before.stamp_s;
@@ -223,7 +230,11 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
     }
   }
   if (report.beams == 0) return;  // without returns there is nothing to judge by
-  const double share = report.match.found ? report.match.score : 0.0;
+  double share = report.match.found ? report.match.score : 0.0;
+  if (fixed_map && relocation.BeginsAgain()) {
+    GiveGuessUp();
+    share = 0.0;
+  }
   if (relocation.BeginIfDoubtful(share, mapped.size())) {
     reference->BeginPart(PartPlace::kGuessed);
   } else if (report.match.found) {
@@ -307,7 +318,8 @@ void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& r
 void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction& prediction,
                                       const FusedPose& fused, FrameReport& report) {
   const StageTimer timer(clocks, report.times.insert_us);
-  if (!scans.matched || fixed_map || !IsOnAMap(fused.map_from_base)) return;
+  if (!scans.matched || (fixed_map && !relocation.unsettled()) || !IsOnAMap(fused.map_from_base))
+    return;
   MappedFrame frame = AsMapped(fused.map_from_base, gap_variance);
   frame.match = report.match;
   // In a report it is in axes of the predicted pose.

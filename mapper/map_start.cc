@@ -186,7 +186,9 @@ Tried Try(const Pose2& map_from_slam, const PriorMap& prior, const DistanceField
   PriorMap fixed = prior;
   fixed.fixed = true;
   fixed.map_from_slam = map_from_slam;
-  IncrementalMapper mapper(options, std::nullopt);
+  MapperOptions trial = options;
+  trial.loops.relocation.use = false;  // the place to be judged is the given one
+  IncrementalMapper mapper(trial, std::nullopt);
   mapper.StartFrom(std::move(fixed));
   Tried tried;
   tried.map_from_slam = map_from_slam;

@@ -84,6 +84,13 @@ FrameMoves MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
   return moves;
 }
 
+void MappedFrames::CutAt(int position) {
+  frames_.erase(frames_.begin() + position, frames_.end());
+  standing_ = Standing();
+  standing_frames_ = 0;
+  keeping_.Rebuild(frames_);
+}
+
 void MappedFrames::ForgetMotionTo(int position) {
   MappedFrame& frame = frames_[static_cast<std::size_t>(position)];
   frame.slam_motion.reset();

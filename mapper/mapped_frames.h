@@ -47,6 +47,8 @@ class MappedFrames {
                          std::span<const MapPart> matched = {}, int from = 0);
   // Sets corrected poses, one per frame. Matches of tied frames move with them.
   FrameMoves MoveTo(const std::vector<Pose2>& map_from_base);
+  // Drops all frames from this index on.
+  void CutAt(int position);
   // Drops SLAM's motion to this frame, which is wrong.
   void ForgetMotionTo(int position);
 

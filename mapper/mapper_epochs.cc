@@ -117,7 +117,7 @@ void IncrementalMapper::State::Anchor(const EpochStart& start) {
 
 bool IncrementalMapper::State::SearchesSlips() const {
   return options.loops.relocation.use && options.method == MapperMethod::kSurfel &&
-         CanTellSlips(options.fusion) && !relocation.active();
+         CanTellSlips(options.fusion) && !fixed_map && !relocation.active();
 }
 
 std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<const Scan>& scan,

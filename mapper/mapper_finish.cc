@@ -31,7 +31,8 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
   result.map_from_camera = std::move(final.map_from_camera);
   result.loops = std::move(final.loops);
   const std::vector<MappedFrame>& mapped_frames = state_->mapped.all();
-  result.mapped = KeptFrames(mapped_frames, final.map_from_base);
+  result.mapped = KeptFrames(state_->FramesOfMap(), final.map_from_base);
+  result.guessed = state_->given_up;
   const auto frame = [&](int i) { return mapped_frames[static_cast<std::size_t>(i)].frame; };
   for (const GuessedPart& part : final.guessed) {
     const bool ends = part.end < static_cast<int>(mapped_frames.size());
@@ -60,9 +61,17 @@ std::vector<Pose2> IncrementalMapper::State::MappedPoses() const {
   return map_from_base;
 }
 
+// Without those that are only kept to find the place in a finished map.
+std::vector<MappedFrame> IncrementalMapper::State::FramesOfMap() const {
+  std::vector<MappedFrame> frames = mapped.all();
+  if (fixed_map) frames.resize(static_cast<std::size_t>(prior_frames));
+  return frames;
+}
+
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalAsItIs() const {
   FinalEstimate final;
   final.map_from_base = MappedPoses();
+  final.guessed = relocation.GuessedParts(mapped.size());
   final.map_from_camera = FinalPoses(history, final.map_from_base, stands);
   return final;
 }
@@ -129,14 +138,14 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalOfSlam(
   return final;
 }
 
-OccupancyMap IncrementalMapper::CurrentMap() const { return state_->Draw(state_->mapped.all()); }
+OccupancyMap IncrementalMapper::CurrentMap() const { return state_->Draw(state_->FramesOfMap()); }
 
 std::vector<std::optional<Pose3>> IncrementalMapper::CurrentPoses() const {
   return state_->FinalAsItIs().map_from_camera;
 }
 
 std::vector<MappedFrame> IncrementalMapper::CurrentMapped() const {
-  return KeptFrames(state_->mapped.all(), state_->MappedPoses());
+  return KeptFrames(state_->FramesOfMap(), state_->MappedPoses());
 }
 
 OccupancyMap IncrementalMapper::State::Draw(const std::vector<MappedFrame>& frames) const {

@@ -36,7 +36,7 @@ IncrementalMapper::State::FoundLoops IncrementalMapper::State::LoopsFound(
 // The frame's reported estimate is not changed.
 void IncrementalMapper::State::FindLoops(const FrameScans& scans, FrameReport& report) {
   const StageTimer timer(clocks, report.times.loops_us);
-  if (!(report.inserted || report.well_seen)) return;
+  if (fixed_map || !(report.inserted || report.well_seen)) return;
   const FoundLoops found = LoopsFound(scans, report);
   if (found.loops.empty()) return;
   const LoopCloser::Outcome outcome =

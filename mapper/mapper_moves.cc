@@ -22,9 +22,36 @@ void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& re
   const StageTimer timer(clocks, report.times.loops_us);
   if (!relocation.unsettled() || !(report.inserted || report.well_seen)) return;
   const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
-  if (!moved) return;
-  MovePart(relocation.first_frame(), *moved);
-  report.relocated = true;
+  report.relocated = moved.has_value();
+  if (fixed_map) {
+    if (!relocation.unsettled()) SettleInFixed(moved.value_or(Pose2{}));
+  } else if (moved) {
+    MovePart(relocation.first_frame(), *moved);
+  }
+}
+
+// The place in a finished map is known again: the poses since the loss move there.
+void IncrementalMapper::State::SettleInFixed(const Pose2& motion) {
+  history.Unmap(FrameAt(mapped.all(), prior_frames).frame, motion);
+  filter.SetCorrection(motion * filter.map_from_slam());
+  ForgetGuess();
+}
+
+// Lost again in a finished map before the place was known.
+void IncrementalMapper::State::GiveGuessUp() {
+  const int first = FrameAt(mapped.all(), prior_frames).frame;
+  given_up.push_back({first, mapped.back().frame});
+  history.Unmap(first, {});
+  ForgetGuess();
+}
+
+// What was mapped at a guess is no part of a finished map, and is not matched any more.
+void IncrementalMapper::State::ForgetGuess() {
+  mapped.CutAt(prior_frames);
+  reference = MakeReference(options);
+  InsertPrior();
+  errors.Break();
+  errors.Adjusted({}, filter.step().new_bias);
 }
 
 // Sets corrected poses; the filter's correction follows the newest mapped frame.

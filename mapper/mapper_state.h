@@ -55,10 +55,11 @@ struct IncrementalMapper::State {
   FrameMoves moves;                          // of earlier frames, by the newest frame
   std::optional<MotionSpread> first_spread;  // that the first frames were mapped again with
   Beginning beginning;
-  bool has_prior = false;            // a prior map, or only its frame
-  int prior_frames = 0;              // the first of `mapped`, from a prior map
-  bool fixed_map = false;            // only localise in the prior map
-  std::optional<Pose2> prior_start;  // map_from_slam at the start in a prior map, until used
+  bool has_prior = false;  // a prior map, or only its frame
+  int prior_frames = 0;    // the first of `mapped`, from a prior map
+  bool fixed_map = false;  // only localise in the prior map: what follows it in `mapped` is a guess
+  std::vector<GuessedFrames> given_up;  // in a fixed map: guesses that ended with the next loss
+  std::optional<Pose2> prior_start;     // map_from_slam at the start in a prior map, until used
 
   State(const MapperOptions& opts, const std::optional<PinholeCamera>& cam, FrameClocks clks,
         GainOracle orc)
@@ -87,6 +88,7 @@ struct IncrementalMapper::State {
 
   Frame Believed(const Frame& frame);
   void TakeBackSince(const FrameRecord& first);
+  void InsertPrior();
   void Map(const Frame& frame, FrameReport& report);
   void Begin(const Frame& frame, FrameReport& report);
   FrameScans ScansOf(const Frame& frame, FrameReport& report);
@@ -104,6 +106,9 @@ struct IncrementalMapper::State {
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);
   void MovePart(int first, const Pose2& motion);
+  void SettleInFixed(const Pose2& motion);
+  void GiveGuessUp();
+  void ForgetGuess();
   // `covariance`: Adjustment::covariance for errors.Mapped(). `moved_apart`: if given, only the
   // frames from this index on were moved, rigidly.
   void MoveTo(const std::vector<Pose2>& map_from_base, const Eigen::MatrixXd& covariance,
@@ -154,6 +159,7 @@ struct IncrementalMapper::State {
   };
   FinalEstimate Final(const std::vector<std::optional<Pose3>>& slam_final) const;
   std::vector<Pose2> MappedPoses() const;
+  std::vector<MappedFrame> FramesOfMap() const;
   FinalEstimate FinalAsItIs() const;
   FinalEstimate FinalByAdjusting() const;
   // Joins what the map of these poses shows twice, if anything.

@@ -17,6 +17,7 @@ constexpr double kLostShare = 0.9;
 
 std::optional<bool> IsOffMap(const FrameReport& report) {
   if (!report.map_from_camera || report.beams == 0) return {};
+  if (report.guessed) return true;
   return !report.match.found || report.match.score < kLeastExplained;
 }
 

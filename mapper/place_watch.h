@@ -8,9 +8,9 @@
 
 namespace depthgrid {
 
-// Whether less than a fifth of the frame's scan lies on the map. Empty for a frame without a pose
-// or a return. Only meaningful with PriorMap::fixed: an extended map contains these frames and
-// explains them wherever they are.
+// Whether less than a fifth of the frame's scan lies on the map, or its place is a guess. Empty for
+// a frame without a pose or a return. Only meaningful with PriorMap::fixed: an extended map
+// contains these frames and explains them wherever they are.
 std::optional<bool> IsOffMap(const FrameReport& report);
 
 // Statistics over the last frames, since a single one may be off the map because a person stands

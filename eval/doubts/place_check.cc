@@ -63,7 +63,7 @@ std::optional<LostFrames> FramesLost(const MappingRun& run, bool localised) {
   std::vector<std::pair<int, bool>> index_and_lost;
   for (const FrameReport& report : run.reports) {
     const auto lost = IsOffMap(report);
-    if (!lost) continue;
+    if (!lost || report.guessed) continue;  // a guess has its own warning
     count.lost += *lost ? 1 : 0;
     ++count.frames;
     index_and_lost.emplace_back(report.index, *lost);

@@ -122,8 +122,7 @@ std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports) {
   };
   std::vector<std::string> lines;
   add(&FrameReport::slipped, "a sudden turn that the scans do not show was taken out", lines);
-  add(&FrameReport::relocated, "what was mapped since they were lost was moved to its place",
-      lines);
+  add(&FrameReport::relocated, "what was seen since they were lost was moved to its place", lines);
   return lines;
 }
 

@@ -106,11 +106,15 @@ bool Relocation::BeginIfDoubtful(double share, int next_frame) {
   }
   // A loop reported with this frame already determines its place.
   if (IsUsual(share) || IsJoinedAt(next_frame)) return false;
-  if (rare_) left_.push_back({first_frame_, next_frame});
+  const bool is_forgotten = rare_ && first_frame_ == next_frame;  // the part before this loss
+  if (rare_ && !is_forgotten) left_.push_back({first_frame_, next_frame});
+  // Then last_known_ is from before that part.
+  lost_s_ = lost_s + (is_forgotten ? lost_s_ : 0.0);
+  if (!is_forgotten) way_before_m_ = 0.0;
+  way_before_m_ += is_forgotten ? way_m_ : 0.0;
   active_ = true;
   rare_ = false;
   first_frame_ = next_frame;
-  lost_s_ = lost_s;
   way_m_ = turn_rad_ = 0.0;
   next_m_ = options_.every_m;
   next_rad_ = RadFromDeg(options_.every_deg);
@@ -225,9 +229,11 @@ bool Relocation::WholePartAgrees(const std::vector<MappedFrame>& frames, const P
 }
 
 std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames) const {
-  const Pose2& last_known = PoseAt(frames, first_frame_ - 1);
+  const Pose2& origin = PoseAt(frames, first_frame_ - 1);
+  const Pose2 last_known = last_known_.value_or(origin);
   const double half_m =
-      std::min(options_.window_m + options_.speed_mps * lost_s_ + way_m_, options_.max_window_m);
+      std::min(options_.window_m + options_.speed_mps * lost_s_ + way_before_m_ + way_m_,
+               options_.max_window_m);
   const std::vector<int> old = OldFrames(frames, first_frame_, last_known, half_m + kSightM);
   const int last = static_cast<int>(frames.size()) - 1;
   const std::vector<int> members =
@@ -238,14 +244,14 @@ std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames) 
   const WallPyramid walls(DrawPlace(frames, old, first_frame_ - 1, resolution_m));
   const std::vector<Eigen::Vector2d> points =
       Thinned(PointsOfPlace(frames, members, middle, resolution_m));
-  const PlaceWindow window{{}, half_m, kPi};
+  const PlaceWindow window{Between(origin, last_known), half_m, kPi};
   const PlaceMatch best = SearchPlace(walls, points, window, options_.min_score);
   if (!best.found) return std::nullopt;
   const NotNear elsewhere{best.place_from_query};
   if (SearchPlace(walls, points, window, options_.max_second_score * best.score, elsewhere).found) {
     return std::nullopt;
   }
-  const Pose2 found = last_known * best.place_from_query;
+  const Pose2 found = origin * best.place_from_query;
   Pose2 shift = found * Inverse(PoseAt(frames, middle));
   const std::vector<int> near = SeenFromNear(frames, old, members, shift);
   const int first = *std::min_element(near.begin(), near.end(), [&](int a, int b) {

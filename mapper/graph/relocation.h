@@ -69,6 +69,9 @@ class Relocation {
   // Reports a pause of the recording. SLAM's step over it is believed unless no robot makes it in
   // that time (speed_mps).
   void Paused(double duration_s, const Pose2& step);
+  // Call with a loss in a finished map, whose last frame does not tell where the camera was: its
+  // last known pose in the map.
+  void LastKnownAt(const Pose2& map_from_base) { last_known_ = map_from_base; }
   // Decides, from the map's explained share of the first scan after a loss, whether the guess is
   // doubtful. If so, begins the search; `next_frame` is the first mapped frame of the new part.
   bool BeginIfDoubtful(double share, int next_frame);
@@ -78,6 +81,8 @@ class Relocation {
   bool active() const { return active_; }
   // Whether the place after the last loss is still a guess, searched for often (active) or rarely.
   bool unsettled() const { return active_ || rare_; }
+  // Whether the next scan decides about a loss during the rare searches: a part of its own begins.
+  bool BeginsAgain() const { return rare_ && unjudged_; }
   int first_frame() const { return first_frame_; }
   // The parts of so many mapped frames that no search and no loop placed: the one after the last
   // loss, and earlier ones that were searched for until the next loss.
@@ -118,11 +123,13 @@ class Relocation {
   bool active_ = false;
   bool rare_ = false;
   int first_frame_ = 0;
-  std::vector<GuessedPart> left_;  // earlier parts whose place was not found
-  std::vector<PlanarLoop> held_;   // loops of the last adjustment with loops
+  std::optional<Pose2> last_known_;  // in a finished map: the camera's pose before the loss
+  std::vector<GuessedPart> left_;    // earlier parts whose place was not found
+  std::vector<PlanarLoop> held_;     // loops of the last adjustment with loops
   double lost_s_ = 0.0;
-  double way_m_ = 0.0;   // since first_frame_
-  double next_m_ = 0.0;  // path length and turn of the next search
+  double way_m_ = 0.0;         // since first_frame_
+  double way_before_m_ = 0.0;  // since last_known_ to there
+  double next_m_ = 0.0;        // path length and turn of the next search
   double turn_rad_ = 0.0;
   double next_rad_ = 0.0;
   int searches_ = 0;

@@ -25,7 +25,7 @@ TEST(MappingRun, SaysWherePosesWereMended) {
   EXPECT_THAT(MendedPoses(reports),
               ElementsAre("poses: a sudden turn that the scans do not show was taken out at frames "
                           "0, 10, 20, 30, 40 and 4 more",
-                          "poses: what was mapped since they were lost was moved to its place at "
+                          "poses: what was seen since they were lost was moved to its place at "
                           "frame 40"));
 }
 

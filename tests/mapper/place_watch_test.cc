@@ -22,6 +22,9 @@ TEST(IsOffMap, OfAFrameThatSaysSomething) {
   FrameReport report = Explained(0.6);
   report.match.found = false;
   EXPECT_EQ(IsOffMap(report), true);
+  report = Explained(0.6);  // by what it drew itself, at a guess
+  report.guessed = true;
+  EXPECT_EQ(IsOffMap(report), true);
   report.beams = 0;
   EXPECT_EQ(IsOffMap(report), std::nullopt);
   report = Explained(0.6);
