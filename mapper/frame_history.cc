@@ -90,6 +90,11 @@ bool FrameHistory::WasLost() const {
   return last != nullptr && (last + 1 != &newest() || last->epoch != newest().epoch);
 }
 
+bool FrameHistory::RestartedAfterLoss() const {
+  const FrameRecord* last = PosedBefore(newest());
+  return last != nullptr && last + 1 != &newest() && last->epoch != newest().epoch;
+}
+
 bool FrameHistory::OutranUsualMotion() const {
   const FrameRecord* last = PosedBefore(newest());
   if (last == nullptr || !newest().slam_from_camera) return false;

@@ -45,6 +45,8 @@ class FrameHistory {
   // Whether SLAM returns with the newest frame after frames without pose or in a new epoch. A pause
   // of the recording is no loss.
   bool WasLost() const;
+  // Whether it returns in a new epoch after frames without pose.
+  bool RestartedAfterLoss() const;
   // Whether the newest frame comes after a pause of the recording: half a second and five usual
   // steps. SLAM may have gone elsewhere meanwhile.
   bool HadPause() const;

@@ -221,6 +221,7 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
     const Pose2 step =
         Between(BaseOf(*before.slam_from_camera), BaseOf(*history.newest().slam_from_camera));
     const double duration_s = report.stamp_s - before.stamp_s;
+    if (history.RestartedAfterLoss()) relocation.Restarted(duration_s);
     if (history.HadPause()) {
       relocation.Paused(duration_s, step);
     } else if (before.epoch != history.newest().epoch || history.OutranUsualMotion()) {
@@ -236,7 +237,7 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
     share = 0.0;
   }
   if (relocation.BeginIfDoubtful(share, mapped.size())) {
-    reference->BeginPart(PartPlace::kGuessed);
+    if (relocation.doubts()) reference->BeginPart(PartPlace::kGuessed);
   } else if (report.match.found) {
     relocation.Explained(share);
   }
@@ -363,7 +364,7 @@ MappedFrame IncrementalMapper::State::AsMapped(const Pose2& map_from_base, doubl
   frame.stamp_s = record.stamp_s;
   frame.map_from_base = map_from_base;
   // If the guess after a loss is doubted, SLAM's motion over it is not used.
-  const bool doubted = relocation.active() && mapped.size() == relocation.first_frame();
+  const bool doubted = relocation.doubts() && mapped.size() == relocation.first_frame();
   if (!doubted && !mapped.empty() && !mapped.back().of_prior_map()) {
     const FrameRecord& before = *history.Find(mapped.back().frame);
     if (before.epoch == record.epoch) {

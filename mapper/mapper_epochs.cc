@@ -70,7 +70,7 @@ IncrementalMapper::State::EpochStart IncrementalMapper::State::BegunAt(
 // map, so the correction of the mapped frame nearest to the new SLAM pose is used, not the one just
 // before the loss, when SLAM may have drifted from its map.
 std::optional<Pose2> IncrementalMapper::State::SlamsWord() const {
-  if (!relocation.active()) return std::nullopt;
+  if (!relocation.doubts()) return std::nullopt;
   const Pose2 slam_from_newest = BaseOf(*history.newest().slam_from_camera);
   std::optional<Pose2> word;
   double least_apart = std::numeric_limits<double>::infinity();
@@ -117,7 +117,7 @@ void IncrementalMapper::State::Anchor(const EpochStart& start) {
 
 bool IncrementalMapper::State::SearchesSlips() const {
   return options.loops.relocation.use && options.method == MapperMethod::kSurfel &&
-         CanTellSlips(options.fusion) && !fixed_map && !relocation.active();
+         CanTellSlips(options.fusion) && !fixed_map && !relocation.doubts();
 }
 
 std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<const Scan>& scan,

@@ -5,7 +5,7 @@ namespace depthgrid {
 
 bool IncrementalMapper::State::SearchesSlides() const {
   return options.loops.slide.use && options.method == MapperMethod::kSurfel && reference &&
-         !fixed_map && !match_oracle && !relocation.active();
+         !fixed_map && !match_oracle && !relocation.doubts();
 }
 
 // Whether the estimate slid along a wall: another pose along it is tried before this one is used.

@@ -74,7 +74,7 @@ void RelocationOptions::Visit(OptionsVisitor& v) {
 }
 
 void Relocation::Explained(double share) {
-  if (active_) return;
+  if (doubts()) return;
   explained_frames_ = std::min(explained_frames_ + 1, kUsualFrames);
   usual_share_ += (share - usual_share_) / explained_frames_;
 }
@@ -84,6 +84,11 @@ void Relocation::Lost(double duration_s, const std::optional<Pose2>& step) {
   const bool elsewhere = step && IsElsewhere(duration_s, *step);
   unjudged_ =
       unjudged_ || duration_s >= (elsewhere ? options_.min_lost_epoch_s : options_.min_lost_s);
+}
+
+void Relocation::Restarted(double duration_s) {
+  unjudged_s_ = std::max(unjudged_s_, duration_s);
+  unjudged_restart_ = true;
 }
 
 void Relocation::Paused(double duration_s, const Pose2& step) {
@@ -98,21 +103,24 @@ bool Relocation::IsElsewhere(double duration_s, const Pose2& step) const {
 
 bool Relocation::BeginIfDoubtful(double share, int next_frame) {
   const double lost_s = std::exchange(unjudged_s_, 0.0);
-  if (!std::exchange(unjudged_, false) || !options_.use || next_frame == 0) return false;
+  const bool doubted = std::exchange(unjudged_, false);
+  const bool restarted = std::exchange(unjudged_restart_, false);
+  if (!(doubted || restarted) || !options_.use || next_frame == 0) return false;
   // Lost again during the search: both losses form one new part.
-  if (active_) {
+  if (active_ && (doubts() || !doubted)) {
     lost_s_ += lost_s;
     return false;
   }
   // A loop reported with this frame already determines its place.
   if (IsUsual(share) || IsJoinedAt(next_frame)) return false;
-  const bool is_forgotten = rare_ && first_frame_ == next_frame;  // the part before this loss
-  if (rare_ && !is_forgotten) left_.push_back({first_frame_, next_frame});
+  const bool is_forgotten = unsettled() && first_frame_ == next_frame;  // the part before this loss
+  if (unsettled() && !is_forgotten) left_.push_back({first_frame_, next_frame});
   // Then last_known_ is from before that part.
   lost_s_ = lost_s + (is_forgotten ? lost_s_ : 0.0);
   if (!is_forgotten) way_before_m_ = 0.0;
   way_before_m_ += is_forgotten ? way_m_ : 0.0;
   active_ = true;
+  believes_ = !doubted;
   rare_ = false;
   first_frame_ = next_frame;
   way_m_ = turn_rad_ = 0.0;

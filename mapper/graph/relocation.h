@@ -66,6 +66,9 @@ class Relocation {
   // Reports a loss: time without pose before this frame and, if SLAM may have restarted, the
   // difference between its poses.
   void Lost(double duration_s, const std::optional<Pose2>& step);
+  // Reports that SLAM began an epoch after frames without a pose, however few: unless the map
+  // explains the first scan the place is searched for, but SLAM's word is believed meanwhile.
+  void Restarted(double duration_s);
   // Reports a pause of the recording. SLAM's step over it is believed unless no robot makes it in
   // that time (speed_mps).
   void Paused(double duration_s, const Pose2& step);
@@ -78,11 +81,14 @@ class Relocation {
   // Whether a match's explained share is that of a right place.
   bool IsUsual(double share) const { return share >= options_.min_share * usual_share_; }
   double usual_share() const { return usual_share_; }
+  // Whether the place is searched for often.
   bool active() const { return active_; }
-  // Whether the place after the last loss is still a guess, searched for often (active) or rarely.
+  // Whether, besides, SLAM's word about it is not believed.
+  bool doubts() const { return active_ && !believes_; }
+  // Whether the place after the last loss is still a guess, searched for often or rarely.
   bool unsettled() const { return active_ || rare_; }
   // Whether the next scan decides about a loss during the rare searches: a part of its own begins.
-  bool BeginsAgain() const { return rare_ && unjudged_; }
+  bool BeginsAgain() const { return rare_ && (unjudged_ || unjudged_restart_); }
   int first_frame() const { return first_frame_; }
   // The parts of so many mapped frames that no search and no loop placed: the one after the last
   // loss, and earlier ones that were searched for until the next loss.
@@ -117,9 +123,11 @@ class Relocation {
   OverlapOptions overlap_;
   PlaceMatcher matcher_;
   double usual_share_ = 0.0;
-  int explained_frames_ = 0;  // frames in that mean, at most kUsualFrames
-  double unjudged_s_ = 0.0;   // the longest loss since the last scan
-  bool unjudged_ = false;     // whether that loss makes the guess doubtful
+  int explained_frames_ = 0;       // frames in that mean, at most kUsualFrames
+  double unjudged_s_ = 0.0;        // the longest loss since the last scan
+  bool unjudged_ = false;          // whether that loss makes the guess doubtful
+  bool unjudged_restart_ = false;  // whether one since the last scan was followed by an epoch
+  bool believes_ = false;          // whether SLAM's word after the loss is believed
   bool active_ = false;
   bool rare_ = false;
   int first_frame_ = 0;
