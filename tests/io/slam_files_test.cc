@@ -210,25 +210,6 @@ TEST_F(SlamFiles, AFileThatGivesThePartNoPoseIsRefusedWithItsStamps) {
   }
 }
 
-// Ten a second, each halfway between two images.
-TEST_F(SlamFiles, PosesBesideNoImageAreInterpolated) {
-  const Pose3 pose = Example().final.front().world_from_camera;
-  FrameNames frames;
-  Trajectory poses;
-  for (int i = 0; i < 12; ++i) {
-    frames.stamps_s.push_back(0.1 * i);
-    poses.push_back({0.1 * i + 0.05, pose});
-  }
-  WriteTrajectory(Paths().live, poses);
-  const SlamInput input = ReadSlamFiles({Paths().live, "", ""}, frames, {0.02, true, 0.2});
-  EXPECT_FALSE(input.slam.live[0].slam_from_camera);
-  for (std::size_t i = 1; i < 12; ++i) EXPECT_TRUE(input.slam.live[i].slam_from_camera) << i;
-  EXPECT_THAT(RefusalOf([&] {
-                ReadSlamFiles({Paths().live, "", ""}, frames, {0.02, false, 0.2});
-              }),
-              HasSubstr("no pose within 0.02 s of any image"));
-}
-
 // A file of positions alone has the columns of a matrix's rows.
 TEST_F(SlamFiles, WhatIsNoMatrixMayBeAMistakenTrajectory) {
   WriteFile(Paths().live, "0 1 2 1\n1 1.1 2 1\n2 1.2 2 1\n");

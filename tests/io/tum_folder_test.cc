@@ -306,10 +306,6 @@ TEST_F(TumFolderTest, ThatMostFramesLackAPoseIsSaidWithTheStamps) {
                                     "interpolates most of them"));
   EXPECT_THAT(warnings_with({PoseAt(0.0, 0.0), PoseAt(0.125, 1.0)}),
               ElementsAre(folder_ + ": 2 of 4 frames have no pose"));
-  // Poses at half the images' rate.
-  EXPECT_TRUE(LacksEachSecondPose({true, false, true, false, true, false}));
-  EXPECT_FALSE(LacksEachSecondPose({true, true, true, false, false, false}));
-  EXPECT_FALSE(LacksEachSecondPose({true, true, true, false, true, true}));
 }
 
 TEST_F(TumFolderTest, UnitsOfDepthAreChecked) {
