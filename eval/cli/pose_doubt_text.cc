@@ -50,10 +50,12 @@ std::string AxesOf(const Eigen::Matrix3d& camera_from_own) {
 constexpr double kSureOfTimeS = 0.0005;
 
 std::string OffsetRemedyOf(const PoseDoubt& doubt) {
-  const std::string setting = fmt::format(
-      "with other stamps: --set sequence.recording.time_offset_s={:.3f}", doubt.time_offset_s);
-  if (doubt.time_unsure_s < kSureOfTimeS) return setting;
-  return fmt::format("{}, {:.3f} s more or less fit as well", setting, doubt.time_unsure_s);
+  const std::string unsure =
+      doubt.time_unsure_s < kSureOfTimeS
+          ? ""
+          : fmt::format(" ({:.3f} s more or less fit as well)", doubt.time_unsure_s);
+  return fmt::format("with other stamps{}: --set sequence.recording.time_offset_s={:.3f}", unsure,
+                     doubt.time_offset_s);
 }
 
 std::string KeptText(const std::optional<KeptDepth>& kept) {
