@@ -26,6 +26,7 @@ std::vector<MappedFrame> WithPoses(std::vector<MappedFrame> frames,
 MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& slam_final) {
   const std::vector<FrameRecord>& records = state_->history.records();
   RequireSoundFinal(slam_final, records.size());
+  state_->RelocateAtLast();
   State::FinalEstimate final = state_->Final(slam_final);
   MapperResult result;
   result.map_from_camera = std::move(final.map_from_camera);

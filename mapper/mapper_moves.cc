@@ -30,6 +30,18 @@ void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& re
   }
 }
 
+// Before the end of a run, if where the newest part lies is still a guess.
+void IncrementalMapper::State::RelocateAtLast() {
+  if (!relocation.unsettled() || mapped.size() <= relocation.first_frame()) return;
+  const std::optional<Pose2> moved = relocation.FindAtLast(mapped.all());
+  if (!moved) return;
+  if (fixed_map) {
+    SettleInFixed(*moved);
+  } else {
+    MovePart(relocation.first_frame(), *moved);
+  }
+}
+
 // The place in a finished map is known again: the poses since the loss move there.
 void IncrementalMapper::State::SettleInFixed(const Pose2& motion) {
   history.Unmap(FrameAt(mapped.all(), prior_frames).frame, motion);

@@ -105,6 +105,7 @@ struct IncrementalMapper::State {
   FoundLoops LoopsFound(const FrameScans& scans, const FrameReport& report);
   void DoubtGuess(const FrameReport& report);
   void Relocate(const FrameScans& scans, FrameReport& report);
+  void RelocateAtLast();
   void MovePart(int first, const Pose2& motion);
   void SettleInFixed(const Pose2& motion);
   void GiveGuessUp();

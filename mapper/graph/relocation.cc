@@ -41,6 +41,12 @@ constexpr double kRarestRad = kPi;
 // what was seen before: grids of 30 MB with a laser that reaches 12 m.
 constexpr double kPartM = 30.0;
 constexpr int kMostOfPart = 100;
+// How far back along the way the scans of the last search reach, besides place.reach_m: where the
+// camera came back through what it had not seen, most of 3 m lies on nothing. And the share of
+// min_agreement that the whole part must reach then, as matches at the guess have bent it
+// (docs/tried.md, "Lost and found").
+constexpr double kLastReachM = 1.0;
+constexpr double kLastAgreement = 0.985;
 
 }  // namespace
 
@@ -205,12 +211,13 @@ std::optional<Pose2> Relocation::Find(const std::vector<MappedFrame>& frames,
     return std::nullopt;
   }
   if (!IsDue(frames)) return std::nullopt;
-  const std::optional<Pose2> found = Search(frames);
+  const std::optional<Pose2> found =
+      Search(frames, static_cast<int>(frames.size()) - 1, options_.place.reach_m);
   const bool same = found && waiting_ && IsSame(*waiting_, *found, frames.back().map_from_base);
   agreed_ = found ? (same ? agreed_ + 1 : 1) : 0;
   if (!same) agreed_from_m_ = way_m_;
   waiting_ = found;
-  if (IsAgreed() && WholePartAgrees(frames, *found)) {
+  if (IsAgreed() && WholePartAgrees(frames, *found, options_.min_agreement)) {
     active_ = rare_ = false;
     return found;
   }
@@ -220,7 +227,8 @@ std::optional<Pose2> Relocation::Find(const std::vector<MappedFrame>& frames,
   return std::nullopt;
 }
 
-bool Relocation::WholePartAgrees(const std::vector<MappedFrame>& frames, const Pose2& shift) const {
+bool Relocation::WholePartAgrees(const std::vector<MappedFrame>& frames, const Pose2& shift,
+                                 double least) const {
   const int end = static_cast<int>(frames.size());
   const Pose2& newest = PoseAt(frames, end - 1);
   const std::vector<int> part =
@@ -233,19 +241,47 @@ bool Relocation::WholePartAgrees(const std::vector<MappedFrame>& frames, const P
   loop.second = part.back();
   loop.first_from_second = Between(PoseAt(frames, loop.first), shift * PoseAt(frames, loop.second));
   const Overlap overlap = OverlapOf(frames, near, part, loop, overlap_);
-  return Agrees(overlap, overlap_) && overlap.agreement() >= options_.min_agreement;
+  return Agrees(overlap, overlap_) && overlap.agreement() >= least;
 }
 
-std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames) const {
+std::optional<int> Relocation::OneBefore(const std::vector<MappedFrame>& frames, int last) const {
+  for (int i = last - 1; i >= first_frame_; --i) {
+    if (AreApart(PoseAt(frames, i), PoseAt(frames, last), options_.every_m,
+                 RadFromDeg(options_.every_deg))) {
+      return i;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Pose2> Relocation::FindAtLast(const std::vector<MappedFrame>& frames) {
+  const int last = static_cast<int>(frames.size()) - 1;
+  const std::optional<int> before = OneBefore(frames, last);
+  if (!unsettled() || !before) return std::nullopt;
+  for (const double reach_m : {options_.place.reach_m, kLastReachM}) {
+    const std::optional<Pose2> found = Search(frames, last, reach_m);
+    if (!found) continue;
+    const std::optional<Pose2> again = Search(frames, *before, reach_m);
+    if (again && IsSame(*found, *again, PoseAt(frames, last)) &&
+        WholePartAgrees(frames, *found, kLastAgreement * options_.min_agreement)) {
+      active_ = rare_ = false;
+      return found;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames, int last,
+                                        double reach_m) const {
   const Pose2& origin = PoseAt(frames, first_frame_ - 1);
   const Pose2 last_known = last_known_.value_or(origin);
   const double half_m =
       std::min(options_.window_m + options_.speed_mps * lost_s_ + way_before_m_ + way_m_,
                options_.max_window_m);
   const std::vector<int> old = OldFrames(frames, first_frame_, last_known, half_m + kSightM);
-  const int last = static_cast<int>(frames.size()) - 1;
-  const std::vector<int> members =
-      FramesAround(frames, last, options_.place, first_frame_, last + 1);
+  PlaceOptions place = options_.place;
+  place.reach_m = reach_m;
+  const std::vector<int> members = FramesAround(frames, last, place, first_frame_, last + 1);
   if (old.empty() || members.empty()) return std::nullopt;
   const int middle = members[members.size() / 2];
   const double resolution_m = options_.place.resolution_m;

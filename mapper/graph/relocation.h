@@ -106,6 +106,9 @@ class Relocation {
   // during the first searches.
   std::optional<Pose2> Find(const std::vector<MappedFrame>& frames,
                             const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
+  // Call at the end while unsettled: searches once more, also with the scans of the last metre
+  // alone. The correction as above, and the search ends then.
+  std::optional<Pose2> FindAtLast(const std::vector<MappedFrame>& frames);
 
  private:
   bool IsJoinedAt(int frame) const;
@@ -116,8 +119,13 @@ class Relocation {
   bool IsDue(const std::vector<MappedFrame>& frames);
   void SetNext();
   bool IsAgreed() const;
-  std::optional<Pose2> Search(const std::vector<MappedFrame>& frames) const;
-  bool WholePartAgrees(const std::vector<MappedFrame>& frames, const Pose2& shift) const;
+  // With the scans within reach_m before frame `last`.
+  std::optional<Pose2> Search(const std::vector<MappedFrame>& frames, int last,
+                              double reach_m) const;
+  // The last frame after which `last` would be due for another search.
+  std::optional<int> OneBefore(const std::vector<MappedFrame>& frames, int last) const;
+  bool WholePartAgrees(const std::vector<MappedFrame>& frames, const Pose2& shift,
+                       double least) const;
 
   RelocationOptions options_;
   OverlapOptions overlap_;
