@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mapper/core/mapped_frame.h"
+
 namespace depthgrid {
 namespace {
 
-constexpr int kGroups = 40;
-constexpr double kStepM = 0.2;
+constexpr int kCorridorGroups = 40;
+constexpr double kCorridorStepM = 0.2;
 constexpr int kFramesPerGroup = 5;
 
 // Two walls along x on both sides of the camera: nothing says how far along them it is.
@@ -37,15 +39,15 @@ struct Corridor {
 // which SLAM did not announce.
 Corridor WalkWithAJump(double jump_m) {
   Corridor corridor;
-  for (int g = 0; g < kGroups; ++g) {
+  for (int g = 0; g < kCorridorGroups; ++g) {
     SurfelGroup group;
     group.first_frame = g * kFramesPerGroup;
     group.frames = kFramesPerGroup;
-    group.map_from_group = {g * kStepM, 0.0, 0.0};
+    group.map_from_group = {g * kCorridorStepM, 0.0, 0.0};
     group.surfels = CorridorSeen();
     corridor.groups.push_back(group);
     const double error_m = g % 2 == 0 ? 0.001 : -0.001;
-    const double motion_m = kStepM + (g == kGroups / 2 ? jump_m : error_m);
+    const double motion_m = kCorridorStepM + (g == kCorridorGroups / 2 ? jump_m : error_m);
     corridor.motions.push_back({true, {motion_m, 0.0, 0.0}, kFramesPerGroup});
   }
   return corridor;
@@ -63,13 +65,14 @@ TEST(JointAdjustment, OneWrongMotionDoesNotMakeThePriorWorthless) {
 // SLAM that errs by 20 mm a group in the last quarter. The poses of the run, which are right, tell
 // it before anything has moved.
 TEST(JointAdjustment, WhereSlamErredByMoreIsToldBeforeTheFirstRound) {
-  constexpr std::size_t kDrifts = 3 * kGroups / 4;
+  constexpr std::size_t kDrifts = 3 * kCorridorGroups / 4;
   Corridor corridor = WalkWithAJump(0.001);
-  for (std::size_t g = kDrifts; g < kGroups; ++g) corridor.motions[g].before_from_group.x_m += 0.02;
+  for (std::size_t g = kDrifts; g < kCorridorGroups; ++g)
+    corridor.motions[g].before_from_group.x_m += 0.02;
   JointOptions options;
   options.rounds = 0;
   const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {}, options);
-  ASSERT_EQ(result.motion_growth.size(), kGroups - 1);
+  ASSERT_EQ(result.motion_growth.size(), kCorridorGroups - 1);
   EXPECT_EQ(result.motion_growth.front().x(), 1.0);
   EXPECT_NEAR(result.motion_growth[kDrifts + 4].x(), 20.0, 2.0);
 }
@@ -86,10 +89,10 @@ TEST(JointAdjustment, WhatOnlyThePriorHoldsStays) {
 
 // Three quarters of the groups are those of a prior map, whose motions fit their poses exactly.
 TEST(JointAdjustment, APriorMapDoesNotTellHowSlamErrs) {
-  constexpr int kPrior = 3 * kGroups / 4;
+  constexpr int kPrior = 3 * kCorridorGroups / 4;
   Corridor corridor = WalkWithAJump(0.001);
   for (std::size_t g = 0; g < kPrior; ++g) {
-    corridor.motions[g] = {true, {kStepM, 0.0, 0.0}, kFramesPerGroup, true};
+    corridor.motions[g] = {true, {kCorridorStepM, 0.0, 0.0}, kFramesPerGroup, true};
   }
   corridor.motions[kPrior].known = false;
   JointOptions options;
@@ -99,40 +102,40 @@ TEST(JointAdjustment, APriorMapDoesNotTellHowSlamErrs) {
 }
 
 TEST(JointAdjustment, ALoopBendsWhatIsNewAndNotThePriorMap) {
-  constexpr int kPrior = kGroups / 2;
+  constexpr int kPrior = kCorridorGroups / 2;
   Corridor corridor = WalkWithAJump(0.001);
   for (std::size_t g = 0; g < kPrior; ++g) {
-    corridor.motions[g] = {true, {kStepM, 0.0, 0.0}, kFramesPerGroup, true};
+    corridor.motions[g] = {true, {kCorridorStepM, 0.0, 0.0}, kFramesPerGroup, true};
   }
-  const Pose2 measured{(kGroups - 1) * kStepM + 0.08, 0.0, 0.0};
-  const GroupLink loop{0, kGroups - 1, measured, {0.01, 0.01, 0.01}};
+  const Pose2 measured{(kCorridorGroups - 1) * kCorridorStepM + 0.08, 0.0, 0.0};
+  const GroupLink loop{0, kCorridorGroups - 1, measured, {0.01, 0.01, 0.01}};
   JointOptions options;
   options.rounds = 0;  // the first step, which has to bring revisits within the gate
   const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {loop}, options);
   const auto moved_m = [&](std::size_t g) {
     return result.map_from_group[g].x_m - corridor.groups[g].map_from_group.x_m;
   };
-  EXPECT_GT(moved_m(kGroups - 1), 0.05);
-  EXPECT_LT(moved_m(kPrior - 1), 0.02 * moved_m(kGroups - 1));
+  EXPECT_GT(moved_m(kCorridorGroups - 1), 0.05);
+  EXPECT_LT(moved_m(kPrior - 1), 0.02 * moved_m(kCorridorGroups - 1));
 }
 
 // SLAM came back 20 m away from where it was lost, in the middle of the way, and one loop says
 // where it really was.
 TEST(JointAdjustment, OneLoopClosesAWideGap) {
-  constexpr std::size_t kBack = kGroups / 2;
+  constexpr std::size_t kBack = kCorridorGroups / 2;
   Corridor corridor = WalkWithAJump(0.001);
   corridor.motions[kBack].known = false;
-  for (std::size_t g = kBack; g < kGroups; ++g) {
+  for (std::size_t g = kBack; g < kCorridorGroups; ++g) {
     Pose2& pose = corridor.groups[g].map_from_group;
     pose = Pose2{20.0, 3.0, 0.5} * pose;
   }
-  const Pose2 measured{(kGroups - 11) * kStepM, 0.0, 0.0};
-  const GroupLink loop{10, kGroups - 1, measured, {0.02, 0.02, 0.01}};
+  const Pose2 measured{(kCorridorGroups - 11) * kCorridorStepM, 0.0, 0.0};
+  const GroupLink loop{10, kCorridorGroups - 1, measured, {0.02, 0.02, 0.01}};
   const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {loop}, {});
   EXPECT_TRUE(result.loop_accepted[0]);
-  for (std::size_t g = 0; g < kGroups; ++g) {
+  for (std::size_t g = 0; g < kCorridorGroups; ++g) {
     const Pose2& pose = result.map_from_group[g];
-    EXPECT_NEAR(pose.x_m, static_cast<double>(g) * kStepM, 0.02) << g;
+    EXPECT_NEAR(pose.x_m, static_cast<double>(g) * kCorridorStepM, 0.02) << g;
     EXPECT_NEAR(pose.y_m, 0.0, 0.02) << g;
   }
 }
@@ -140,15 +143,16 @@ TEST(JointAdjustment, OneLoopClosesAWideGap) {
 // SLAM jumped along the walls from one frame to the next, and a loop of a few centimetres' accuracy
 // asks for 4 cm: what was known without SLAM to a millimetre stays.
 TEST(JointAdjustment, AGapIsHeldAsWellAsItsMotionWasKnown) {
-  constexpr std::size_t kJumped = kGroups / 2;
+  constexpr std::size_t kJumped = kCorridorGroups / 2;
   const auto moved_m = [&](double gap_share) {
     Corridor corridor = WalkWithAJump(0.001);
     corridor.motions[kJumped].known = false;
     corridor.motions[kJumped].gap_share = gap_share;
-    const Pose2 measured{(kGroups - 11) * kStepM + 0.04, 0.0, 0.0};
-    const GroupLink loop{10, kGroups - 1, measured, {0.05, 0.05, 0.01}};
+    const Pose2 measured{(kCorridorGroups - 11) * kCorridorStepM + 0.04, 0.0, 0.0};
+    const GroupLink loop{10, kCorridorGroups - 1, measured, {0.05, 0.05, 0.01}};
     const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {loop}, {});
-    return result.map_from_group[kJumped].x_m - result.map_from_group[kJumped - 1].x_m - kStepM;
+    return result.map_from_group[kJumped].x_m - result.map_from_group[kJumped - 1].x_m -
+           kCorridorStepM;
   };
   EXPECT_GT(moved_m(1.0), 0.02);
   EXPECT_LT(std::abs(moved_m(0.012)), 0.002);
@@ -156,20 +160,20 @@ TEST(JointAdjustment, AGapIsHeldAsWellAsItsMotionWasKnown) {
 
 // SLAM was lost twice, for half a second and for several; a loop tells that it came back 3 m off.
 TEST(JointAdjustment, OfTwoGapsTheLongerGivesWay) {
-  constexpr std::size_t kShort = kGroups / 3, kLong = 2 * kGroups / 3;
+  constexpr std::size_t kShort = kCorridorGroups / 3, kLong = 2 * kCorridorGroups / 3;
   for (const bool swaps : {false, true}) {
     Corridor corridor = WalkWithAJump(0.001);
     corridor.motions[kShort].known = corridor.motions[kLong].known = false;
     corridor.motions[kShort].gap_share = swaps ? kGuessedShare : 1.7;
     corridor.motions[kLong].gap_share = swaps ? 1.7 : kGuessedShare;
-    const Pose2 measured{(kGroups - 11) * kStepM + 3.0, 0.0, 0.0};
-    const GroupLink loop{10, kGroups - 1, measured, {0.02, 0.02, 0.01}};
+    const Pose2 measured{(kCorridorGroups - 11) * kCorridorStepM + 3.0, 0.0, 0.0};
+    const GroupLink loop{10, kCorridorGroups - 1, measured, {0.02, 0.02, 0.01}};
     const JointResult result = AdjustJointly(corridor.groups, corridor.motions, {loop}, {});
     EXPECT_TRUE(result.loop_accepted[0]);
     for (const std::size_t g : {kShort, kLong}) {
       const double step_m = result.map_from_group[g].x_m - result.map_from_group[g - 1].x_m;
       const bool opens = (g == kShort) == swaps;
-      EXPECT_NEAR(step_m, kStepM + (opens ? 3.0 : 0.0), 0.05) << swaps;
+      EXPECT_NEAR(step_m, kCorridorStepM + (opens ? 3.0 : 0.0), 0.05) << swaps;
     }
   }
 }
@@ -184,10 +188,10 @@ TEST(JointAdjustment, OneLoopClosesAGapToATurnedWorld) {
   std::vector<Pose2> truth;
   for (std::size_t g = 0; g < kMany; ++g) {
     const bool is_back = g >= kMany / 2;
-    const auto way_m = kStepM * static_cast<double>(is_back ? kMany - 1 - g : g);
+    const auto way_m = kCorridorStepM * static_cast<double>(is_back ? kMany - 1 - g : g);
     truth.push_back({way_m, 0.0, is_back ? kPi : 0.0});
     groups[g].map_from_group = Pose2{0.0, 0.0, is_back ? 1.0 : 0.0} * truth[g];
-    motions[g] = {g != kMany / 2, {kStepM, 0.0, 0.0}, kFramesPerGroup};
+    motions[g] = {g != kMany / 2, {kCorridorStepM, 0.0, 0.0}, kFramesPerGroup};
   }
   const GroupLink loop{0, kMany - 1, truth.back(), {0.02, 0.02, 0.01}};
   JointOptions options;
@@ -225,8 +229,8 @@ TEST(JointAdjustment, ALoopMayRunBackInTime) {
 TEST(JointAdjustment, EndsAtTheFirstLoopOnTrialThatIsNotAccepted) {
   const Corridor corridor = WalkWithAJump(0.001);
   const auto sideways = [](int first, double by_m, bool on_trial) {
-    const Pose2 measured{(kGroups - 1 - first) * kStepM, by_m, 0.0};
-    GroupLink loop{first, kGroups - 1, measured, {0.02, 0.02, 0.01}};
+    const Pose2 measured{(kCorridorGroups - 1 - first) * kCorridorStepM, by_m, 0.0};
+    GroupLink loop{first, kCorridorGroups - 1, measured, {0.02, 0.02, 0.01}};
     loop.on_trial = on_trial;
     return loop;
   };
@@ -249,12 +253,12 @@ TEST(JointAdjustment, EndsAtTheFirstLoopOnTrialThatIsNotAccepted) {
 TEST(JointAdjustment, GoesOnWhileThePriorTurnsOutBetter) {
   std::vector<SurfelGroup> groups;
   std::vector<GroupMotion> motions;
-  for (int g = 0; g < kGroups; ++g) {
+  for (int g = 0; g < kCorridorGroups; ++g) {
     const double off_m = 0.01 * ((g * 7) % 5 - 2);
     SurfelGroup group;
     group.first_frame = g * kFramesPerGroup;
     group.frames = kFramesPerGroup;
-    group.map_from_group = {g * kStepM + off_m, 0.0, 0.0};
+    group.map_from_group = {g * kCorridorStepM + off_m, 0.0, 0.0};
     for (int i = 0; i < 10; ++i) {
       Surfel surfel;
       surfel.point_m = {12.0 - group.map_from_group.x_m, 0.05 * i};
@@ -264,7 +268,7 @@ TEST(JointAdjustment, GoesOnWhileThePriorTurnsOutBetter) {
       group.surfels.push_back(surfel);
     }
     groups.push_back(group);
-    motions.push_back({true, {kStepM, 0.0, 0.0}, kFramesPerGroup});
+    motions.push_back({true, {kCorridorStepM, 0.0, 0.0}, kFramesPerGroup});
   }
   JointOptions options;
   options.rounds = 2;
