@@ -161,7 +161,7 @@ TEST_F(ProgramView, ThatFewFramesCouldBeMatchedIsSaid) {
                               " of 59 frames could be matched, the poses of the others are "
                               "those given: "),
                     HasSubstr(": in "),
-                    HasSubstr(" of the others, the first is frame 0, the camera sees at its height "
+                    HasSubstr(" of the others, the first is frame 1, the camera sees at its height "
                               "mostly what is beyond 2 m "
                               "(mapper.scan.max_range_m); the images"),
                     HasSubstr("80x60 pixels"), Not(HasSubstr("path"))));
