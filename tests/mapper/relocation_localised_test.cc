@@ -7,6 +7,7 @@
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/place_watch.h"
+#include "tests/mapper/mapped_frame.h"
 #include "tests/mapper/match_world.h"
 
 namespace depthgrid {
@@ -23,15 +24,10 @@ Pose2 TourAt(int i) {
 }
 
 PriorMap TourMap() {
-  ScanArchive archive;
   PriorMap prior;
   for (int i = 0; i < kTourFrames; ++i) {
-    MappedFrame frame;
-    frame.frame = i - kTourFrames;
-    frame.stamp_s = i / 30.0;
-    frame.scan = frame.obstacles = archive.Keep(
-        ScanOf(FurnishedRoom(), TourAt(i), kTourLaser, 1, static_cast<std::uint32_t>(i)));
-    frame.map_from_base = TourAt(i);
+    MappedFrame frame = MappedFrameAt(FurnishedRoom(), kTourLaser, TourAt(i), TourAt(i), i);
+    frame.frame -= kTourFrames;
     prior.frames.push_back(frame);
   }
   prior.map_from_slam = Pose2{};
