@@ -172,7 +172,9 @@ void CompareRuns(const CompareArguments& arguments) {
   options.metrics = arguments.metrics;
   options.where_a = ConditionsOf(arguments.where, "--where-a", arguments.where_a);
   options.where_b = ConditionsOf(arguments.where, "--where-b", arguments.where_b);
-  const Comparison comparison = Compare(ReadRuns(arguments.a), ReadRuns(arguments.b), options);
+  SweepResults a = ReadRuns(arguments.a);  // first, so that an error names it first
+  SweepResults b = ReadRuns(arguments.b);
+  const Comparison comparison = Compare(std::move(a), std::move(b), options);
   if (comparison.metrics.empty() && comparison.all_equal.empty() &&
       comparison.without_direction.empty()) {
     throw InputError(arguments.b, "shares no score that is defined with " + arguments.a);
