@@ -304,7 +304,8 @@ void IncrementalMapper::State::TellMotion(const FusedPose& fused, FrameReport& r
   errors.Add(
       filter.step(), report.index, static_cast<int>(mapped.size()),
       report.match.information / (options.fusion.match_overconfidence * match_noise.factor()),
-      taken ? reference->MatchedParts() : std::span<const MapPart>());
+      taken ? reference->MatchedParts() : std::span<const MapPart>(),
+      report.stand ? LastingErrorOfCamera(options.fusion.lasting_share) : LastingError());
   if (errors.innovation_covariance()) {
     const InnovationSize size =
         SeenSize(*errors.innovation_covariance(), report.match.information, fused.innovation);

@@ -35,6 +35,9 @@ void FusionOptions::Visit(OptionsVisitor& v) {
            "the stated errors");
   v.Flag("judge_innovations", judge_innovations,
          "learned: whether stated errors take matches to be as noisy as innovations show");
+  v.Number("lasting_share", lasting_share, {0.0, 100.0},
+           "depth cameras: stated errors take this much of a match's variance to last while the "
+           "view does");
   v.Number(
       "tilt_rad", tilt_rad, {0.0, 1.0},
       "uncertainty of a wall's direction against the one that the prediction knows least; 0: none");

@@ -57,6 +57,10 @@ struct FusionOptions {
   // `learned`: whether the reported innovation_chi2 and motion_covariance scale the matches' noise
   // to their innovations (MatchNoise). Poses do not depend on it.
   bool judge_innovations = true;
+  // Depth cameras: the part of a match's error that lasts while the view does, in units of the
+  // match's variance; with 0 all of it is new in each frame. For the reported innovation_chi2 and
+  // motion_covariance (PoseErrors); poses do not depend on it.
+  double lasting_share = 1.0;
   // Angular uncertainty between walls and the prediction's least certain direction:
   // InformationFor().
   double tilt_rad = 0.001;

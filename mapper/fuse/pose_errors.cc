@@ -15,6 +15,9 @@ constexpr double kNewestAge = 8.0;
 // Correlation time of the noise of the map in view, as a share of the map's mean age; measured
 // (docs/tried.md, "Laser logs").
 constexpr double kNoiseAge = 0.4;
+// Sigmas of a depth camera's lasting error where matches claim to be exact: forward and left (m),
+// yaw (rad). Measured with five sensors in two rooms (docs/tried.md, "Errors that last").
+constexpr std::array<double, 3> kLeastLasting = {0.0003, 0.0003, 0.0002};
 
 Eigen::Matrix3d Turned(const Eigen::Matrix3d& covariance, const Eigen::Matrix3d& adjoint) {
   return adjoint * covariance * adjoint.transpose();
@@ -44,6 +47,11 @@ double ShareOfMapNoise(std::span<const MapPart> parts) {
 }
 
 }  // namespace
+
+LastingError LastingErrorOfCamera(double share) {
+  if (share <= 0.0) return {};
+  return {share, Eigen::Vector3d(kLeastLasting.data())};
+}
 
 PoseErrors::PoseErrors(int stretch_frames) : stretch_frames_(stretch_frames) {
   knots_with_newest_.setZero();
@@ -102,7 +110,8 @@ void PoseErrors::Adjusted(const Eigen::MatrixXd& covariance,
 }
 
 void PoseErrors::Add(const FilterStep& step, int index, int mapped,
-                     const Eigen::Matrix3d& information, std::span<const MapPart> parts) {
+                     const Eigen::Matrix3d& information, std::span<const MapPart> parts,
+                     const LastingError& lasting) {
   ++frame_;
   innovation_.reset();
   if (knots_.empty()) {
@@ -110,7 +119,7 @@ void PoseErrors::Add(const FilterStep& step, int index, int mapped,
   } else {
     if (knots_.back().frame - knots_[marked_].frame >= stretch_frames_) marked_ = knots_.size() - 1;
     Predict(step, parts);
-    Take(step, See(step, information, parts));
+    Take(step, See(step, information, parts, lasting));
     if (parts.empty()) innovation_.reset();
   }
   Keep(index, mapped);
@@ -187,17 +196,22 @@ void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_bas
 }
 
 // A match's error has three parts: the errors of the frames that drew the map there, that surface's
-// own noise, which persists while it is in view, and the scan's noise, which is independent.
+// own noise, which persists while it is in view as the scan's lasting error does, and the scan's
+// noise, which is independent.
 PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matrix3d& information,
-                                       std::span<const MapPart> parts) {
+                                       std::span<const MapPart> parts,
+                                       const LastingError& lasting) {
   MatchError match{Eigen::Matrix3d::Zero(), Matrix93::Zero()};
   knots_with_match_.setZero();
   if (parts.empty()) return match;
   Weigh(parts, step.predicted);
   const double noise_share = ShareOfMapNoise(parts);
-  const Eigen::Matrix3d noise = Turned(SeenInverse(information), OriginFromBase(step.predicted));
+  const Eigen::Matrix3d origin_from_step = OriginFromBase(step.predicted);
+  const Eigen::Matrix3d noise = Turned(SeenInverse(information), origin_from_step);
+  const Eigen::Matrix3d lasts =
+      (noise_share + lasting.share) * noise + Turned(Squared(lasting.least), origin_from_step);
   auto map_noise = newest_.block<3, 3>(kMapNoise, kMapNoise);
-  map_noise += WithEigenvaluesAtLeast(noise_share * noise - map_noise, 0.0);
+  map_noise += WithEigenvaluesAtLeast(lasts - map_noise, 0.0);
   for (const int slot : shared_) {
     const Eigen::Matrix3d& share = share_[static_cast<std::size_t>(slot)];
     knots_with_match_.noalias() += covariance_.middleCols<3>(3 * slot) * share.transpose();

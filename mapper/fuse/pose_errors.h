@@ -16,6 +16,14 @@
 
 namespace depthgrid {
 
+// The part of a scan's own error that is not new in each frame but lasts while the view does.
+struct LastingError {
+  double share = 0.0;                               // of the match's variance
+  Eigen::Vector3d least = Eigen::Vector3d::Zero();  // sigma in base axes, added
+};
+// That of a depth camera, of which `share` (FusionOptions::lasting_share) is set; none if it is 0.
+LastingError LastingErrorOfCamera(double share);
+
 class PoseErrors {
  public:
   // `stretch_frames`: most frames over which motions are reported.
@@ -25,7 +33,7 @@ class PoseErrors {
   // among the mapped frames. `information`: of the match used in the step; `parts`: what was
   // matched against, empty if the frame was not matched.
   void Add(const FilterStep& step, int index, int mapped, const Eigen::Matrix3d& information,
-           std::span<const MapPart> parts);
+           std::span<const MapPart> parts, const LastingError& lasting = {});
   // Call when the map was corrected: reported motions restart.
   void Break() { broken_ = true; }
   // Call when a new SLAM epoch begins with the next frame at this pose: adds covariance (base
@@ -55,7 +63,7 @@ class PoseErrors {
   // Rows of newest_, in axes of origin_ except the bias: true pose = Exp(error) * estimate.
   static constexpr int kPose = 0;      // the filter's state
   static constexpr int kBias = 3;      // the filter's bias, in base axes
-  static constexpr int kMapNoise = 6;  // noise of the map surface in view
+  static constexpr int kMapNoise = 6;  // of the surface in view, with the scan's lasting error
   static constexpr int kCamera = 9;    // the pose as reported
   using Matrix9 = Eigen::Matrix<double, 9, 9>;
   using Matrix93 = Eigen::Matrix<double, 9, 3>;
@@ -80,7 +88,7 @@ class PoseErrors {
   void Predict(const FilterStep& step, std::span<const MapPart> parts);
   void Weigh(std::span<const MapPart> parts, const Pose2& map_from_base);
   MatchError See(const FilterStep& step, const Eigen::Matrix3d& information,
-                 std::span<const MapPart> parts);
+                 std::span<const MapPart> parts, const LastingError& lasting);
   void Take(const FilterStep& step, const MatchError& match);
   void RenewBias(const Eigen::Vector3d& bias);
   void Keep(int index, int mapped);

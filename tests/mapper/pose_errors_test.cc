@@ -8,6 +8,8 @@
 
 #include "mapper/core/rng.h"
 #include "mapper/fuse/fusion.h"
+#include "mapper/incremental_mapper.h"
+#include "tests/mapper/planar_world.h"
 
 namespace depthgrid {
 namespace {
@@ -146,6 +148,57 @@ TEST(PoseErrors, AgreeWithManySimulatedRuns) {
   // frames where they are old.
   EXPECT_NEAR(sum / (3.0 * kRuns), 1.0, 0.12);
   EXPECT_NEAR(innovations / (3.0 * kRuns), 1.0, 0.12);
+}
+
+TEST(PoseErrors, OfACameraLastWhileTheViewDoes) {
+  // At rest before an exact map, matched poses taken as they are.
+  const LastingError lasting = LastingErrorOfCamera(3.0);
+  PoseErrors errors(10);
+  constexpr int kFirst = 10;
+  constexpr int kLast = 19;
+  double kept = 1.0;
+  for (int i = 0; i <= kLast; ++i) {
+    const MapPart part = PartOf(-5.0);
+    FilterStep step = StepAt(0, Eigen::Vector3d::Zero());
+    step.gain = Eigen::Matrix3d::Identity();
+    step.state_gain.topRows<3>() = step.gain;
+    errors.Add(step, i, i, MatchInformation(), {&part, 1}, lasting);
+    if (i > kFirst) kept *= 1.0 - 1.0 / (1.0 + 0.4 * (i + 5));
+  }
+  ASSERT_EQ(errors.motion_from(), kFirst);
+  const Eigen::Matrix3d noise = Squared(kMatchSigma);
+  const Eigen::Matrix3d lasts = 3.0 * noise + Squared(lasting.least);
+  EXPECT_TRUE(errors.MotionCovariance(TruePose(0))
+                  .isApprox(2.0 * noise + 2.0 * (1.0 - kept) * lasts, 1e-9));
+}
+
+// The last motion's variance forward, in a round trip through a room.
+double VarianceForward(const std::optional<CameraStand>& stand, double lasting_share) {
+  const PlanarWorld room = RectangleWorld(0.0, 0.0, 6.0, 5.0);
+  MapperOptions options;
+  options.fusion.lasting_share = lasting_share;
+  IncrementalMapper mapper(options, std::nullopt);
+  FrameReport report;
+  for (int i = 0; i < 60; ++i) {
+    const Pose2 truth = {3.0 + 0.02 * i, 2.5, 0.05 * i};
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    frame.scan = std::make_shared<Scan>(
+        ScanOf(room, truth, {.beams = 160, .sigma_of_range = 0.01}, 5, static_cast<unsigned>(i)));
+    frame.stand = stand;
+    frame.slam_from_camera = CameraOf(truth, 0.5);
+    report = mapper.AddFrame(frame);
+  }
+  return report.motion_covariance(0, 0);
+}
+
+TEST(PoseErrors, LastForCamerasOnly) {
+  const CameraStand upright = StandOf(CameraOf(Pose2(), 0.5), 0.0);
+  const double scanner = VarianceForward(std::nullopt, 1.0);
+  EXPECT_EQ(VarianceForward(std::nullopt, 0.0), scanner);
+  EXPECT_EQ(VarianceForward(upright, 0.0), scanner);
+  EXPECT_GT(VarianceForward(upright, 1.0), 1.2 * scanner);
 }
 
 TEST(PoseErrors, TellInnovationsOnlyOfFramesThatMatched) {
