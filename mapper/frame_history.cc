@@ -15,8 +15,6 @@ namespace {
 
 // A motion so many times as large as usual is far larger; chosen, not measured.
 constexpr double kFar = 3.0;
-// Longest gap over which the last motion is extrapolated.
-constexpr double kNearS = 0.5;
 // Longest gap that counts as one frame: 10 Hz, and what stamps are rounded by.
 constexpr double kNextS = 0.105;
 // Gap at which the extrapolation's uncertainty reaches kEpochSigma; it grows with the square of the
@@ -24,10 +22,6 @@ constexpr double kNextS = 0.105;
 constexpr double kSurpriseS = 0.3;
 // Longest extrapolation in steps: a shorter step took no time but for a stamp's rounding.
 constexpr double kMostExtrapolatedSteps = 100.0;
-
-bool IsNear(const FrameHistory& history, const FrameRecord& record) {
-  return history.newest().stamp_s - record.stamp_s <= kNearS;
-}
 
 // SLAM's motion; both records must have poses.
 Pose2 MotionOf(const FrameRecord& from, const FrameRecord& to) {
@@ -42,7 +36,7 @@ constexpr int kFinalReachFrames = 300;
 
 }  // namespace
 
-void FrameHistory::Start(const Frame& frame) {
+void FrameHistory::Start(const Frame& frame, bool is_told) {
   const auto place = PlaceOf(frame.index);
   if (place != position_of_index_.end() && place->first == frame.index) {
     throw InputError("frame " + std::to_string(frame.index), "was given before");
@@ -52,7 +46,7 @@ void FrameHistory::Start(const Frame& frame) {
   record.index = frame.index;
   record.stamp_s = frame.stamp_s;
   record.slam_from_camera = frame.slam_from_camera;
-  record.epoch = epochs_.Of(frame);
+  record.epoch = is_told ? epochs_.Of(frame) : epochs_.newest();
   records_.push_back(record);
 }
 
@@ -195,16 +189,19 @@ bool WaitsForAnchor(const FrameRecord& record, const FrameHistory& history) {
 
 }  // namespace
 
-Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam) {
+Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam, double near_s) {
+  const auto is_near = [&](const FrameRecord& record) {
+    return history.newest().stamp_s - record.stamp_s <= near_s;
+  };
   const FrameRecord* last = history.PosedBefore(history.newest());
   if (last == nullptr) return {BaseOf(*history.newest().slam_from_camera), true};
   const double gap_s = history.newest().stamp_s - last->stamp_s;
-  Extrapolation went_on{map_from_slam * BaseOf(*last->slam_from_camera), IsNear(history, *last),
+  Extrapolation went_on{map_from_slam * BaseOf(*last->slam_from_camera), is_near(*last),
                         gap_s <= kNextS, std::min(1.0, std::pow(gap_s / kSurpriseS, 2))};
   const FrameRecord* later = last;
   const FrameRecord* before = history.PosedBefore(*later);
   // An epoch of one frame has no motion: use the last motion before it.
-  while (before != nullptr && before->epoch != later->epoch && IsNear(history, *before)) {
+  while (before != nullptr && before->epoch != later->epoch && is_near(*before)) {
     later = before;
     before = history.PosedBefore(*later);
   }

@@ -27,8 +27,9 @@ struct FrameRecord {
 
 class FrameHistory {
  public:
-  // Starts the record of a frame. Throws InputError for an index that came before.
-  void Start(const Frame& frame);
+  // Starts the record of a frame; not `is_told`: its pose is the last one moved on, which begins no
+  // epoch. Throws InputError for an index that came before.
+  void Start(const Frame& frame, bool is_told = true);
   // Makes the newest frame begin an epoch: its pose minus the previous one is no motion.
   void BeginEpoch() { records_.back().epoch = epochs_.BeginAtLast(); }
 
@@ -85,7 +86,10 @@ struct Extrapolation {
   // How well the motion is known, the same: 1 but where that of one frame went on.
   double gap_share = 1.0;
 };
-Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam);
+// Longest gap over which the last motion is extrapolated, if nothing tells more.
+constexpr double kNearS = 0.5;
+Extrapolation Extrapolated(const FrameHistory& history, const Pose2& map_from_slam,
+                           double near_s = kNearS);
 
 // MappedFrame::gap_share of the frame after a gap of so many seconds in SLAM's motion.
 double ShareOfGap(double gap_s);

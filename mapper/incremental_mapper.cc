@@ -89,12 +89,19 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   return report;
 }
 
-// Without a pose that is held.
+// Without a pose that is held; one that repeats as odometry is slower than the scans is moved on.
 Frame IncrementalMapper::State::Believed(const Frame& frame) {
   Frame believed = frame;
-  if (!reference || !held.IsHeld(frame)) return believed;
-  believed.slam_from_camera.reset();
-  if (const FrameRecord* first = history.Find(held.first_frame())) TakeBackSince(*first);
+  if (!reference) return believed;
+  if (held.IsHeld(frame)) {
+    believed.slam_from_camera.reset();
+    if (const FrameRecord* first = history.Find(held.first_frame())) TakeBackSince(*first);
+  } else if (const std::optional<Pose3> moved_on = held.MovedOn()) {
+    believed.slam_from_camera = moved_on;
+    // Older ones are asked for only where the first frames are mapped again.
+    if (!beginning.lasts()) moved_on_frames.clear();
+    moved_on_frames.push_back(frame.index);
+  }
   return believed;
 }
 
@@ -123,6 +130,7 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
   if (!frame.slam_from_camera) return;  // SLAM is lost: no estimate
   Prediction prediction = Predict(scans.matched, report);
   Match(scans.matched, prediction, report);
+  prediction = AfterGap(scans, prediction, report);
   prediction = AfterSlip(scans.matched, prediction, report);
   LookForSlide(scans.matched, prediction, report);
   DoubtGuess(report);
@@ -135,7 +143,9 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
 }
 
 void IncrementalMapper::State::Begin(const Frame& frame, FrameReport& report) {
-  history.Start(frame);
+  const bool is_told = std::find(moved_on_frames.begin(), moved_on_frames.end(), frame.index) ==
+                       moved_on_frames.end();
+  history.Start(frame, is_told);
   moves = {};
   report.index = frame.index;
   report.stamp_s = frame.stamp_s;

@@ -11,6 +11,7 @@ void IncrementalMapper::State::GoThroughAgain(const Frame& newest,
                                               const std::optional<MotionSpread>& spread) {
   State again(options, camera, clocks, oracle);
   again.beginning.End();
+  again.moved_on_frames = moved_on_frames;
   again.rounds = AdjustmentRounds({.first_frames = 0});
   if (spread) again.filter.BeginWith(filter, *spread);
   const auto begin = [&](const Frame& frame, FrameReport& report) {

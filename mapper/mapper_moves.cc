@@ -22,7 +22,7 @@ void IncrementalMapper::State::Relocate(const FrameScans& scans, FrameReport& re
   const StageTimer timer(clocks, report.times.loops_us);
   if (!relocation.unsettled() || !(report.inserted || report.well_seen)) return;
   const std::optional<Pose2> moved = relocation.Find(mapped.all(), scans.matched, *reference);
-  report.relocated = moved.has_value();
+  report.relocated = moved && !relocation.IsGuess(*moved, mapped.all());
   if (fixed_map) {
     if (!relocation.unsettled()) SettleInFixed(moved.value_or(Pose2{}));
   } else if (moved) {

@@ -34,6 +34,7 @@ struct IncrementalMapper::State {
   GainOracle oracle;
   MatchOracle match_oracle;
   HeldWatch held;
+  std::vector<int> moved_on_frames;  // Frame::index of those whose pose was moved on
   FrameScanner scanner;
   MovingObjects moving;
   std::unique_ptr<ReferenceMap> reference;  // null when SLAM is trusted alone
@@ -119,6 +120,9 @@ struct IncrementalMapper::State {
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);
+  Overlap SeenBeforeAt(const Pose2& map_from_base, const FrameScans& scans);
+  std::optional<double> GapWithinEpoch() const;
+  Prediction AfterGap(const FrameScans& scans, const Prediction& prediction, FrameReport& report);
   Prediction AfterSlip(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
                        FrameReport& report);
   void LookForSlide(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,

@@ -55,13 +55,20 @@ struct Frame {
   // A pose that repeats the last one bit for bit counts as empty once the scan or image shows that
   // the sensor moves (mapper/scan/held_watch.h): many systems that are lost repeat their last pose.
   // Not before the first pose that differs, as there may be no odometry.
+  //
+  // Odometry slower than the scans: give the pose at the scan's own stamp, interpolated between the
+  // messages around it, if scans can wait for the next message. If not, give the last message's
+  // pose again until the next one comes: at half the scans' rate or less it is moved on by the last
+  // motion, and matched from there (docs/math.md, "Poses that stay"). From 5 Hz on the estimate is
+  // about as good as with poses at every scan. Empty poses in between lose these frames' estimates.
   std::optional<Pose3> slam_from_camera;
   // Must change whenever SLAM corrects itself (loop closure, relocalisation): the difference of two
   // poses is a motion only within an epoch, and a jump taken for a motion bends the map
   // permanently. A step inconsistent with the previous motion (mapper/core/slam_step.h) begins an
   // epoch by itself. Unreported corrections are missed when smaller than 0.1 m + 10 m/s^2 t^2 over
   // a step of duration t; for t above a second only a jump back to the origin or first pose, and
-  // one of more than 10 m and 50 m/s, are noticed.
+  // one of more than 10 m and 50 m/s, are noticed. After 0.2 s and more without a pose so is any
+  // after which the scan contradicts the map.
   int slam_epoch = 0;
   // Loop closures reported with this frame, applied before its pose is used.
   std::vector<LoopClosure> loops;

@@ -46,7 +46,8 @@ struct StageTimes {
 struct FrameReport {
   int index = 0;
   double stamp_s = 0.0;
-  // The input; empty where it repeats a pose while the sensor moves (Frame::slam_from_camera).
+  // The input; empty where it repeats a pose while the sensor moves, and moved on where it does so
+  // as odometry is slower than the scans (Frame::slam_from_camera).
   std::optional<Pose3> slam_from_camera;
   int slam_epoch = 0;
   std::optional<Pose3> map_from_camera;  // the online estimate; empty while unknown
@@ -69,8 +70,9 @@ struct FrameReport {
   int beams = 0;                     // beams with a hit in the matched scan
   int loops_accepted = 0;            // loop events that entered the graph with this frame
   int loops_rejected = 0;
-  bool slipped = false;    // SLAM's motion to here contradicted the scan and was corrected
-  bool relocated = false;  // the frames since a loss of SLAM were moved to where they belong
+  bool slipped = false;  // SLAM's motion to here contradicted the scan and was corrected
+  // The frames since a loss of SLAM were moved to where they belong; not where the guess was right.
+  bool relocated = false;
   // After a loss of SLAM: the pose relative to the map from before it is only a guess, until the
   // wide search finds the place or an accepted loop joins the two parts.
   bool guessed = false;

@@ -16,6 +16,7 @@ class SlamEpochs {
   // a pose at the origin or at the first pose. A frame without a pose has the epoch of the last one
   // with a pose. Call once per frame, in order of time.
   int Of(const Frame& frame);
+  int newest() const { return epoch_; }
   // Makes the last frame begin a new epoch, detected by other means (such as a slip).
   int BeginAtLast() { return ++epoch_; }
 

@@ -15,6 +15,8 @@ constexpr double kDrawnEveryRad = RadFromDeg(15.0);
 constexpr int kMostDrawn = 500;
 // Old frames that each new one is compared with.
 constexpr std::size_t kOldForEach = 2;
+// Old frames that the newest one alone is compared with, at most.
+constexpr int kMostForNewest = 100;
 
 }  // namespace
 
@@ -54,6 +56,19 @@ std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std:
   std::sort(near.begin(), near.end());
   near.erase(std::unique(near.begin(), near.end()), near.end());
   return near;
+}
+
+Overlap OverlapOfNewest(const std::vector<MappedFrame>& frames, const OverlapOptions& options) {
+  const int newest = static_cast<int>(frames.size()) - 1;
+  const Pose2& pose = PoseAt(frames, newest);
+  const std::vector<int> old =
+      EvenlySpread(OldFrames(frames, newest, pose, kSightM), kMostForNewest);
+  if (old.empty()) return {};
+  PlanarLoop loop;
+  loop.first = old.back();
+  loop.second = newest;
+  loop.first_from_second = Between(PoseAt(frames, loop.first), pose);
+  return OverlapOf(frames, old, {newest}, loop, options);
 }
 
 }  // namespace depthgrid

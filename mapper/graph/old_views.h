@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mapper/core/mapped_frame.h"
+#include "mapper/graph/loop_overlap.h"
 
 namespace depthgrid {
 
@@ -25,5 +26,8 @@ inline std::vector<int> OldFrames(const std::vector<MappedFrame>& frames, int en
 // the members see. In order.
 std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std::vector<int>& old,
                               const std::vector<int>& members, const Pose2& shift);
+
+// How the last frame agrees, at its pose, with what those before it saw from anywhere near.
+Overlap OverlapOfNewest(const std::vector<MappedFrame>& frames, const OverlapOptions& options);
 
 }  // namespace depthgrid

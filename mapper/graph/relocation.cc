@@ -284,6 +284,9 @@ std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames, 
   const std::vector<int> members = FramesAround(frames, last, place, first_frame_, last + 1);
   if (old.empty() || members.empty()) return std::nullopt;
   const int middle = members[members.size() / 2];
+  const std::optional<Pose2> guess =
+      ConfirmedAt(guess_matcher_, frames, old, members, middle, PoseAt(frames, middle));
+  if (guess && IsSame(*guess, {}, PoseAt(frames, last))) return guess;
   const double resolution_m = options_.place.resolution_m;
   const WallPyramid walls(DrawPlace(frames, old, first_frame_ - 1, resolution_m));
   const std::vector<Eigen::Vector2d> points =
@@ -295,18 +298,34 @@ std::optional<Pose2> Relocation::Search(const std::vector<MappedFrame>& frames, 
   if (SearchPlace(walls, points, window, options_.max_second_score * best.score, elsewhere).found) {
     return std::nullopt;
   }
-  const Pose2 found = origin * best.place_from_query;
-  Pose2 shift = found * Inverse(PoseAt(frames, middle));
+  return ConfirmedAt(matcher_, frames, old, members, middle, origin * best.place_from_query);
+}
+
+// Of the guess less must be seen again than of a place that is searched for: nothing else competes.
+LoopSearchOptions Relocation::ForGuess(LoopSearchOptions gates) {
+  gates.min_explained = 0.0;
+  return gates;
+}
+
+// The correction of the part once its frame `middle` is matched near this pose with what was seen
+// before; empty if the two do not agree.
+std::optional<Pose2> Relocation::ConfirmedAt(const PlaceMatcher& matcher,
+                                             const std::vector<MappedFrame>& frames,
+                                             const std::vector<int>& old,
+                                             const std::vector<int>& members, int middle,
+                                             const Pose2& map_from_middle) const {
+  const Pose2 shift = map_from_middle * Inverse(PoseAt(frames, middle));
   const std::vector<int> near = SeenFromNear(frames, old, members, shift);
   const int first = *std::min_element(near.begin(), near.end(), [&](int a, int b) {
-    return Separation(PoseAt(frames, a), found) < Separation(PoseAt(frames, b), found);
+    return Separation(PoseAt(frames, a), map_from_middle) <
+           Separation(PoseAt(frames, b), map_from_middle);
   });
   PlanarLoop loop;
   loop.first = first;
   loop.second = middle;
-  loop.first_from_second = Between(PoseAt(frames, first), found);
+  loop.first_from_second = Between(PoseAt(frames, first), map_from_middle);
   const std::optional<PlanarLoop> confirmed =
-      matcher_.Confirmed(frames, near, members, loop, options_.min_agreement);
+      matcher.Confirmed(frames, near, members, loop, options_.min_agreement);
   if (!confirmed) return std::nullopt;
   return PoseAt(frames, first) * confirmed->first_from_second * Inverse(PoseAt(frames, middle));
 }

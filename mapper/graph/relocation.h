@@ -59,7 +59,10 @@ class Relocation {
   // `gates`: the limits for loops, by which two places are tested.
   Relocation(const RelocationOptions& options, const LoopSearchOptions& gates,
              const OverlapOptions& overlap)
-      : options_(options), overlap_(overlap), matcher_(gates, overlap) {}
+      : options_(options),
+        overlap_(overlap),
+        matcher_(gates, overlap),
+        guess_matcher_(ForGuess(gates), overlap) {}
 
   // Adds the explained share of a matched frame in normal operation.
   void Explained(double share);
@@ -106,6 +109,10 @@ class Relocation {
   // during the first searches.
   std::optional<Pose2> Find(const std::vector<MappedFrame>& frames,
                             const std::shared_ptr<const Scan>& newest, ReferenceMap& reference);
+  // Whether this correction leaves the newest frame about where it is: the guess was right.
+  bool IsGuess(const Pose2& correction, const std::vector<MappedFrame>& frames) const {
+    return IsSame(correction, {}, frames.back().map_from_base);
+  }
   // Call at the end while unsettled: searches once more, also with the scans of the last metre
   // alone. The correction as above, and the search ends then.
   std::optional<Pose2> FindAtLast(const std::vector<MappedFrame>& frames);
@@ -122,6 +129,11 @@ class Relocation {
   // With the scans within reach_m before frame `last`.
   std::optional<Pose2> Search(const std::vector<MappedFrame>& frames, int last,
                               double reach_m) const;
+  static LoopSearchOptions ForGuess(LoopSearchOptions gates);
+  std::optional<Pose2> ConfirmedAt(const PlaceMatcher& matcher,
+                                   const std::vector<MappedFrame>& frames,
+                                   const std::vector<int>& old, const std::vector<int>& members,
+                                   int middle, const Pose2& map_from_middle) const;
   // The last frame after which `last` would be due for another search.
   std::optional<int> OneBefore(const std::vector<MappedFrame>& frames, int last) const;
   bool WholePartAgrees(const std::vector<MappedFrame>& frames, const Pose2& shift,
@@ -130,6 +142,7 @@ class Relocation {
   RelocationOptions options_;
   OverlapOptions overlap_;
   PlaceMatcher matcher_;
+  PlaceMatcher guess_matcher_;
   double usual_share_ = 0.0;
   int explained_frames_ = 0;       // frames in that mean, at most kUsualFrames
   double unjudged_s_ = 0.0;        // the longest loss since the last scan

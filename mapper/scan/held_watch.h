@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "mapper/core/frame.h"
+#include "mapper/core/slam_step.h"
 #include "mapper/core/view_change.h"
 
 namespace depthgrid {
@@ -21,13 +22,23 @@ class HeldWatch {
   // be no odometry. Somebody who fills the view of a standing robot has the same effect. Call once
   // per frame, in order of time.
   bool IsHeld(const Frame& frame);
+  // After IsHeld(): the last frame's pose if it repeats the one before because poses come at half
+  // the frames' rate or less: moved on by the motion between the last two poses, for as long as
+  // that took. Empty where the pose is to be taken as it is.
+  std::optional<Pose3> MovedOn() const;
   // Frame::index of the first frame with this pose.
   int first_frame() const { return first_frame_; }
 
  private:
+  void Begin(const Frame& frame);
   std::size_t UsualRun() const;
+  std::size_t UsualRunSoFar() const;
 
   std::optional<Pose3> pose_;
+  double since_s_ = 0.0;  // stamp of the first frame with this pose
+  double now_s_ = 0.0;    // and of the last one
+  int slam_epoch_ = 0;
+  std::optional<SlamStep> step_;  // from the pose before to this, unless SLAM jumped
   int first_frame_ = -1;
   std::size_t run_ = 0;  // frames with this pose
   bool held_ = false;

@@ -106,5 +106,56 @@ TEST(HeldWatch, LetsTheMapperGoOnWhereSlamIs) {
   EXPECT_LT(std::abs(off.yaw_rad), 0.01);
 }
 
+// Farthest that the online poses are off where a pose of the odometry is passed with each scan
+// until the next one comes, every `run` scans.
+double WorstSlowErrorM(int run) {
+  const PlanarWorld room = FurnishedRoom();
+  IncrementalMapper mapper({}, std::nullopt);
+  PlanarLaser laser;
+  laser.beams = 320;
+  laser.sigma_of_range = 0.01;
+  const auto truth = [](int i) {
+    const double angle_rad = 2.0 * kPi * i / 300;
+    return Pose2{3.0 + 0.9 * std::cos(angle_rad), 1.7 + 0.6 * std::sin(angle_rad),
+                 WrapAngle(angle_rad + 0.5 * kPi)};
+  };
+  double worst_m = 0.0;
+  for (int i = 0; i < 300; ++i) {
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = i / 30.0;
+    frame.scan = std::make_shared<const Scan>(
+        ScanOf(room, truth(i), laser, 4, static_cast<std::uint32_t>(i)));
+    frame.slam_from_camera = CameraOf(truth(i / run * run), 0.0);
+    const FrameReport report = mapper.AddFrame(frame);
+    if (!report.map_from_camera || i < 60) continue;
+    const Pose2 pose = BaseOf(*report.map_from_camera);
+    worst_m = std::max(worst_m, (pose.translation() - truth(i).translation()).norm());
+  }
+  return worst_m;
+}
+
+TEST(HeldWatch, OdometrySlowerThanTheScansIsMovedOn) { EXPECT_LT(WorstSlowErrorM(6), 0.06); }
+
+TEST(HeldWatch, MovesOnWhatRepeatsForAsLongAsAStepTook) {
+  HeldWatch watch;
+  std::vector<std::optional<Pose3>> moved_on;
+  for (int i = 0; i < 33; ++i) {
+    Frame frame;
+    frame.index = i;
+    frame.stamp_s = 0.1 * i;
+    frame.slam_from_camera = CameraOf({i < 24 ? 0.1 * (i / 4) : 0.6, 0.0, 0.0}, 0.0);
+    EXPECT_FALSE(watch.IsHeld(frame));
+    moved_on.push_back(watch.MovedOn());
+  }
+  EXPECT_FALSE(moved_on[6]);   // one run is too few
+  EXPECT_FALSE(moved_on[12]);  // a new pose
+  for (const auto& [i, x_m] : {std::pair{13, 0.325}, {15, 0.375}, {25, 0.625}, {30, 0.7}}) {
+    ASSERT_TRUE(moved_on[static_cast<std::size_t>(i)]) << i;
+    EXPECT_NEAR(BaseOf(*moved_on[static_cast<std::size_t>(i)]).x_m, x_m, 1e-9) << i;
+  }
+  EXPECT_FALSE(moved_on[32]);  // longer than twice the usual time: it stands
+}
+
 }  // namespace
 }  // namespace depthgrid

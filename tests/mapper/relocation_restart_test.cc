@@ -1,5 +1,5 @@
-// SLAM that is lost for less than two seconds and begins anew no farther than a robot may have
-// gone.
+// SLAM that is lost for less than two seconds and begins anew, or jumps untold, no farther than a
+// robot may have gone.
 #include <gtest/gtest.h>
 
 #include "mapper/core/level.h"
@@ -22,8 +22,8 @@ struct RestartedRun {
 };
 
 // Once round a room, then frames without poses, then SLAM's world is moved by `jump` about the
-// camera.
-RestartedRun RestartAfter(int lost_frames, const Pose2& jump) {
+// camera; `told`: in a new epoch.
+RestartedRun RestartAfter(int lost_frames, const Pose2& jump, bool told = true) {
   constexpr int kLost = 260, kFrames = 420;
   const int back = kLost + lost_frames;
   const PlanarWorld room = FurnishedRoom();
@@ -38,7 +38,7 @@ RestartedRun RestartAfter(int lost_frames, const Pose2& jump) {
     const PlanarLaser laser{.beams = 320, .sigma_of_range = 0.01};
     frame.scan =
         std::make_shared<const Scan>(ScanOf(room, truth, laser, 4, static_cast<std::uint32_t>(i)));
-    frame.slam_epoch = i < back ? 0 : 1;
+    frame.slam_epoch = told && i >= back ? 1 : 0;
     if (i < kLost) frame.slam_from_camera = CameraOf(truth, 1.0);
     if (i >= back) frame.slam_from_camera = CameraOf(at * jump * Between(at, truth), 1.0);
     const FrameReport report = mapper.AddFrame(frame);
@@ -59,6 +59,15 @@ TEST(RelocationRestart, AShortLossAndASmallJumpAreSearchedFor) {
     const RestartedRun run = RestartAfter(lost_frames, {0.1, 0.6, 0.2});
     // Up to half a second the last motion leads to where the map explains the scan.
     EXPECT_EQ(run.first_guessed, lost_frames > 15) << lost_frames;
+    EXPECT_FALSE(run.last_guessed) << lost_frames;
+    EXPECT_LT(run.worst_m, 0.02) << lost_frames;
+  }
+}
+
+// The scan contradicts the map there.
+TEST(RelocationRestart, AJumpThatNobodyTellsIsNoticed) {
+  for (const int lost_frames : {9, 21, 40}) {
+    const RestartedRun run = RestartAfter(lost_frames, {0.1, 0.6, 0.2}, false);
     EXPECT_FALSE(run.last_guessed) << lost_frames;
     EXPECT_LT(run.worst_m, 0.02) << lost_frames;
   }
