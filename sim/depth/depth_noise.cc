@@ -18,13 +18,16 @@ namespace depthgrid {
 namespace {
 
 using noise::DepthSamples;
+using noise::kAxial;
+using noise::kGrazing;
 using noise::NoiseTraits;
 using noise::SampleSource;
 using noise::Sampling;
 using noise::Values;
 
-// Index of the axial one among a pixel's four normals.
-constexpr std::size_t kAxial = 2;
+std::size_t BlocksOf(std::size_t pixels) {
+  return (pixels + kNormalBlockItems - 1) / kNormalBlockItems;
+}
 
 DepthSamples Sample(const NoiseTraits& traits, const SampleSource& source, std::size_t first,
                     std::size_t count, const NormalBlock& random, float scale) {
@@ -101,15 +104,13 @@ std::vector<float> DepthNoise::CorrelatedAxial(std::uint64_t seed, std::uint32_t
   const auto width = static_cast<std::size_t>(camera_.width_px);
   const std::size_t pixels = width * static_cast<std::size_t>(camera_.height_px);
   std::vector<float> white(pixels);
-  CallInParallel(
-      (pixels + kNormalBlockItems - 1) / kNormalBlockItems, threads_, [&](std::size_t block) {
-        const std::size_t first = block * kNormalBlockItems;
-        NormalBlock random;
-        FillNormals(seed, RandomStage::kDepthNoise, frame, static_cast<std::uint32_t>(first),
-                    random);
-        std::copy_n(random.normals[kAxial].data(),
-                    std::min<std::size_t>(kNormalBlockItems, pixels - first), white.data() + first);
-      });
+  CallInParallel(BlocksOf(pixels), threads_, [&](std::size_t block) {
+    const std::size_t first = block * kNormalBlockItems;
+    NormalBlock random;
+    FillNormals(seed, RandomStage::kDepthNoise, frame, static_cast<std::uint32_t>(first), random);
+    std::copy_n(random.normals[kAxial].data(),
+                std::min<std::size_t>(kNormalBlockItems, pixels - first), white.data() + first);
+  });
   return Correlated(white, width, options_.noise_correlation_px, threads_);
 }
 
@@ -123,19 +124,19 @@ DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_co
   const auto scale = static_cast<float>(options_.noise_scale);
   const auto focal_px = static_cast<float>(camera_.fx_px);
   const auto min_m = static_cast<float>(range_.min_m), max_m = static_cast<float>(range_.max_m);
-  const float limit = GrazingLimitRad(options_);
-  const auto softness = static_cast<float>(RadFromDeg(options_.grazing_softness_deg));
+  const float limit_rad = GrazingLimitRad(options_);
+  const auto softness_rad = static_cast<float>(RadFromDeg(options_.grazing_softness_deg));
   const std::size_t pixels = lit.z_m.size();
   DepthImage noisy(lit.width_px, lit.height_px);
-  const std::vector<float> alike =
+  const std::vector<float> correlated_axial =
       options_.noise_correlation_px > 0.0 ? CorrelatedAxial(seed, frame) : std::vector<float>{};
   const auto add_to_block = [&](std::size_t block) {
     const std::size_t first = block * kNormalBlockItems;
     const std::size_t count = std::min<std::size_t>(kNormalBlockItems, pixels - first);
     NormalBlock random;
     FillNormals(seed, RandomStage::kDepthNoise, frame, static_cast<std::uint32_t>(first), random);
-    if (!alike.empty()) {
-      std::copy_n(alike.data() + first, count, random.normals[kAxial].data());
+    if (!correlated_axial.empty()) {
+      std::copy_n(correlated_axial.data() + first, count, random.normals[kAxial].data());
     }
     const DepthSamples clean = Sample(traits, source, first, count, random, scale);
     alignas(64) Values theta;
@@ -144,12 +145,12 @@ DepthImage DepthNoise::AddNoise(const DepthImage& lit, const float* incidence_co
     for (std::size_t i = 0; i < kNormalBlockItems; ++i) {
       const float z = measured[i];
       const bool is_kept = (clean.z[i] > 0.0F) & (z > 0.0F) & (z >= min_m) & (z <= max_m) &
-                           (theta[i] <= limit + softness * random.normals[3][i]);
+                           (theta[i] <= limit_rad + softness_rad * random.normals[kGrazing][i]);
       measured[i] = noise::Select(is_kept, z, kInvalidDepth);
     }
     std::copy_n(measured.data(), count, noisy.z_m.data() + first);
   };
-  CallInParallel((pixels + kNormalBlockItems - 1) / kNormalBlockItems, threads_, add_to_block);
+  CallInParallel(BlocksOf(pixels), threads_, add_to_block);
   return noisy;
 }
 

@@ -58,8 +58,8 @@ DepthSamples SampleAcrossEdges(const SampleSource& source, std::size_t first, st
   const auto width = static_cast<std::int32_t>(source.depth.width_px);
   const auto last_u = static_cast<float>(source.depth.width_px - 1);
   const auto last_v = static_cast<float>(source.depth.height_px - 1);
-  const float* const normal_u = random.normals[0].data();
-  const float* const normal_v = random.normals[1].data();
+  const float* const normal_u = random.normals[kLateralU].data();
+  const float* const normal_v = random.normals[kLateralV].data();
   alignas(64) Indices other;
   alignas(64) Values shift_px;
   for (std::size_t i = 0; i < kItems; ++i) {
@@ -92,8 +92,8 @@ DepthSamples SampleBetweenPixels(const SampleSource& source, std::size_t first, 
   const auto width = static_cast<std::int32_t>(source.depth.width_px);
   const auto last_u = static_cast<float>(source.depth.width_px - 1);
   const auto last_v = static_cast<float>(source.depth.height_px - 1);
-  const float* const normal_u = random.normals[0].data();
-  const float* const normal_v = random.normals[1].data();
+  const float* const normal_u = random.normals[kLateralU].data();
+  const float* const normal_v = random.normals[kLateralV].data();
   // The four surrounding pixels, which coincide at the image's last column and row.
   alignas(64) Indices corner, right_of, below, nearest;
   alignas(64) Values right, down;

@@ -13,6 +13,12 @@ namespace depthgrid::noise {
 
 using Values = std::array<float, kNormalBlockItems>;
 
+// What each of a pixel's four normals (NormalBlock::normals) is for.
+constexpr std::size_t kLateralU = 0;
+constexpr std::size_t kLateralV = 1;
+constexpr std::size_t kAxial = 2;
+constexpr std::size_t kGrazing = 3;  // of the softness of the grazing limit
+
 // A clean frame with the inverse depths that sampling needs.
 struct SampleSource {
   const DepthImage& depth;
@@ -30,14 +36,14 @@ struct DepthSamples {
 // The depths of `count` pixels from pixel `first` on; the rest of the block is invalid.
 DepthSamples SampleInPlace(const SampleSource& source, std::size_t first, std::size_t count);
 
-// Lateral noise at silhouettes: the pixel takes the depth at a shift of (normals 0, 1) times
-// Nguyen's lateral sigma times `scale` if that lies on another surface. Within a surface it keeps
-// its own depth: the axial sigma was measured on planes and so includes the effect of lateral
+// Lateral noise at silhouettes: the pixel takes the depth at a shift of its lateral normals
+// times Nguyen's lateral sigma times `scale` if that lies on another surface. Within a surface it
+// keeps its own depth: the axial sigma was measured on planes and so includes the effect of lateral
 // shifts.
 DepthSamples SampleAcrossEdges(const SampleSource& source, std::size_t first, std::size_t count,
                                const NormalBlock& random, float scale);
 
-// The depth at a shift of (normals 0, 1) times sigma_px. Between pixels of one surface 1/z is
+// The depth at a shift of the lateral normals times sigma_px. Between pixels of one surface 1/z is
 // interpolated, which is exact on planes; where the four surrounding pixels are not one surface,
 // the nearest pixel is taken.
 DepthSamples SampleBetweenPixels(const SampleSource& source, std::size_t first, std::size_t count,
