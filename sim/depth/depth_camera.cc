@@ -14,6 +14,8 @@ namespace {
 // 4x2 for packets of 8, 4x4 for packets of 16.
 constexpr int kTileWidth = 4;
 constexpr int kMaxTileHeight = 4;
+// How far a tile may reach beyond the image's last column or row.
+constexpr int kTileOverhangPx = std::max(kTileWidth, kMaxTileHeight) - 1;
 
 struct View {
   const PinholeCamera& camera;
@@ -104,7 +106,7 @@ void RenderImage(RTCScene scene, const View& view, int threads, const Output& ou
 
 // (k - centre) / focal for k in [0, size), padded so that the last tile reads defined values.
 std::vector<float> Tangents(int size_px, double centre_px, double focal_px) {
-  std::vector<float> tangents(static_cast<std::size_t>(size_px + kMaxTileHeight - 1));
+  std::vector<float> tangents(static_cast<std::size_t>(size_px + kTileOverhangPx));
   for (std::size_t k = 0; k < tangents.size(); ++k) {
     tangents[k] = static_cast<float>((static_cast<double>(k) - centre_px) / focal_px);
   }
