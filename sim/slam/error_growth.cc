@@ -8,6 +8,7 @@
 namespace depthgrid {
 namespace {
 
+// Of one lag: short lags have far more pairs, and would decide alone.
 constexpr double kMaxWeight = 100.0;
 
 using Rows = Eigen::MatrixX4d;
@@ -19,7 +20,7 @@ Eigen::RowVector4d TermsAt(const CorrelationTimes& times, double lag_s) {
           2.0 * times.drift_s * times.drift_s * (x + std::expm1(-x))};
 }
 
-// Least squares over the columns in `mask`; the other unknowns are 0.
+// Least squares over the columns whose bit is set in `mask`; the other unknowns are 0.
 Eigen::Vector4d Solve(const Rows& rows, const Eigen::VectorXd& target, int mask) {
   Rows used = rows;
   Eigen::Matrix4d unused = Eigen::Matrix4d::Zero();
@@ -37,7 +38,7 @@ std::vector<Growth> MeasureGrowth(const std::vector<ErrorTrack>& tracks, int axe
   std::size_t longest = 0;
   for (const ErrorTrack& track : tracks) longest = std::max(longest, track.size());
   std::vector<Growth> growth;
-  std::size_t lag = 1;
+  std::size_t lag = 1;  // Fibonacci numbers
   for (std::size_t next = 2; lag <= longest / 3; std::swap(lag, next), next += lag) {
     double sum = 0.0;
     double time_s = 0.0;

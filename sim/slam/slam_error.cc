@@ -40,27 +40,32 @@ double EventProbability(double rate_hz, double time_s) { return -std::expm1(-rat
 // An Ornstein-Uhlenbeck process with exact updates for any time step.
 class SlowProcess {
  public:
-  struct Sigma {
-    double translation_m = 0.0;
-    double rotation_deg = 0.0;
+  // Stationary sigma and correlation time. The value is a pose (m, degrees), or for the drift a
+  // rate (m, degrees per second).
+  struct Parameters {
+    double translation = 0.0;
+    double rotation = 0.0;
     double time_s = 1.0;
   };
-  SlowProcess(const Sigma& sigma, std::uint64_t seed, RandomStage stage, const Twist& start)
-      : sigma_(sigma), seed_(seed), stage_(stage), value_(start) {}
+  SlowProcess(const Parameters& parameters, std::uint64_t seed, RandomStage stage,
+              const Twist& start)
+      : parameters_(parameters), seed_(seed), stage_(stage), value_(start) {}
 
   Twist Next(std::uint32_t frame, double time_s) {
-    const double kept = std::exp(-time_s / sigma_.time_s);
-    value_ = kept * value_ + std::sqrt(1.0 - kept * kept) * Fresh(sigma_, seed_, stage_, frame);
+    const double kept = std::exp(-time_s / parameters_.time_s);
+    value_ =
+        kept * value_ + std::sqrt(1.0 - kept * kept) * Fresh(parameters_, seed_, stage_, frame);
     return value_;
   }
-  static Twist Fresh(const Sigma& sigma, std::uint64_t seed, RandomStage stage,
+  // A draw from the stationary distribution.
+  static Twist Fresh(const Parameters& parameters, std::uint64_t seed, RandomStage stage,
                      std::uint32_t frame) {
     RandomStream random(seed, stage, frame);
-    return Draw(random, sigma.translation_m, sigma.rotation_deg);
+    return Draw(random, parameters.translation, parameters.rotation);
   }
 
  private:
-  Sigma sigma_;
+  Parameters parameters_;
   std::uint64_t seed_;
   RandomStage stage_;
   Twist value_;
@@ -76,10 +81,10 @@ SlowProcess BiasProcess(const SlamOptions& options, std::uint64_t seed) {
 
 // Starts in its stationary distribution.
 SlowProcess DriftProcess(const SlamOptions& options, std::uint64_t seed) {
-  const SlowProcess::Sigma sigma = {options.drift_speed_mps, options.drift_turn_dps,
-                                    options.drift_time_s};
-  return {sigma, seed, RandomStage::kSlamDrift,
-          SlowProcess::Fresh(sigma, seed, RandomStage::kSlamDrift, 0)};
+  const SlowProcess::Parameters parameters = {options.drift_speed_mps, options.drift_turn_dps,
+                                              options.drift_time_s};
+  return {parameters, seed, RandomStage::kSlamDrift,
+          SlowProcess::Fresh(parameters, seed, RandomStage::kSlamDrift, 0)};
 }
 
 class LostProcess {

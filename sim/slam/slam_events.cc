@@ -7,14 +7,14 @@
 namespace depthgrid {
 namespace {
 
-constexpr double kGapSteps = 1.5;  // a step longer than this many median steps is a gap
-constexpr double kJumpMedians = 5.0;
+constexpr double kGapSteps = 1.5;     // a step longer than this many median steps is a gap
+constexpr double kJumpMedians = 5.0;  // a jump is larger than this many median errors
 // Where most motions have no error, as of a SLAM that mostly stands or of a file that repeats the
 // truth, five medians are nothing too, and the rounding of the others would be jumps. A TUM file's
 // last decimal is 0.1 mm.
 constexpr double kLeastJumpM = 1e-3;
-constexpr double kOneJumpS = 0.2;
-constexpr double kCorrectedShare = 0.5;
+constexpr double kOneJumpS = 0.2;        // jumps that are nearer in time are one
+constexpr double kCorrectedShare = 0.5;  // a correction leaves less than this share of the error
 
 }  // namespace
 

@@ -22,14 +22,17 @@ constexpr double kDriftTimesS[] = {2.0, 5.0, 10.0, 20.0};
 struct RunEvents {
   const SlamRun* run = nullptr;
   std::vector<RunEvent> events;
-  std::vector<bool> in_event;  // for the motion that ends at each pose
+  std::vector<bool> in_event;  // of the motion that ends at each pose
 };
+
+// Sets the flags of the motions of an event.
+void Mark(const RunEvent& event, std::vector<bool>& motions) {
+  for (std::size_t to = event.from + 1; to <= event.to; ++to) motions[to] = true;
+}
 
 RunEvents EventsOf(const SlamRun& run) {
   RunEvents found{&run, FindEvents(run), std::vector<bool>(run.truth.size(), false)};
-  for (const RunEvent& event : found.events) {
-    for (std::size_t to = event.from + 1; to <= event.to; ++to) found.in_event[to] = true;
-  }
+  for (const RunEvent& event : found.events) Mark(event, found.in_event);
   return found;
 }
 
@@ -95,8 +98,7 @@ Tracks ErrorTracks(const std::vector<RunEvents>& runs, double pivot_m) {
   for (const RunEvents& run : runs) {
     std::vector<bool> is_left_out(run.in_event.size(), false);
     for (const RunEvent& event : run.events) {
-      if (!event.correction && event.lost_s == 0.0) continue;
-      for (std::size_t to = event.from + 1; to <= event.to; ++to) is_left_out[to] = true;
+      if (event.correction || event.lost_s > 0.0) Mark(event, is_left_out);
     }
     const Trajectory& truth = run.run->truth;
     tracks.Begin(truth.front().stamp_s);
