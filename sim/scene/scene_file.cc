@@ -158,16 +158,17 @@ class SceneReader {
   }
 
   void ReadMaterials(Config materials) {
-    for (const auto& name : materials.Keys()) {
+    for (const ConfigEntry& entry : materials.Entries()) {
+      const std::string& name = entry.key;
       for (const auto& known : scene_.materials) {
         if (known.name != name) continue;
         if (name == scene_.materials.front().name) {
-          throw InputError(materials.Place(),
+          throw InputError(entry.place,
                            fmt::format("material name '{}' is reserved for shapes without a "
                                        "material; choose another name",
                                        name));
         }
-        throw InputError(materials.Place(), fmt::format("material '{}' is given twice", name));
+        throw InputError(entry.place, fmt::format("material '{}' is given twice", name));
       }
       MaterialOptions options;
       materials.Take(name).Read(options);
@@ -176,15 +177,18 @@ class SceneReader {
   }
 
   void AddMaterial(Material material) {
-    if (scene_.materials.size() >= kMaxMaterials) throw InputError(path_, "too many materials");
+    if (scene_.materials.size() >= kMaxMaterials) {
+      throw InputError(path_, fmt::format("more than {} materials", kMaxMaterials));
+    }
     scene_.materials.push_back(std::move(material));
   }
 
   void ReadGroups(Config groups) {
-    for (const auto& name : groups.Keys()) {
+    for (const ConfigEntry& entry : groups.Entries()) {
+      const std::string& name = entry.key;
       for (const auto& known : groups_) {
         if (known.name != name) continue;
-        throw InputError(groups.Place(), fmt::format("group '{}' is given twice", name));
+        throw InputError(entry.place, fmt::format("group '{}' is given twice", name));
       }
       groups_.push_back({name, groups.TakeMaps(name), {}, false});
     }
@@ -330,8 +334,8 @@ class SceneReader {
     MeshOptions options;
     config.Read(options);
     if (options.file.empty()) throw InputError(config.Place(), "'file' is missing");
-    MeshFile read = ReadMeshFile(
-        ExistingFile("file", config.Text("file"), config.PlaceOfKey("file")), 1.0, options.up);
+    MeshFile read = ReadMeshFile(ExistingFile("file", options.file, config.PlaceOfKey("file")), 1.0,
+                                 options.up);
     if (!options.item.material.empty()) {
       const std::uint16_t material = MaterialIndex(options.item.material, config.Place());
       std::fill(read.mesh.material_of_triangle.begin(), read.mesh.material_of_triangle.end(),

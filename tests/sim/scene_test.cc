@@ -239,8 +239,13 @@ TEST_F(SceneFiles, ErrorsOfReferencesNameTheNearest) {
   Write("parts.yaml", materials);
   EXPECT_EQ(ErrorOf("include: parts.yaml\n" + materials),
             "~/s.yaml:2: material 'oak' is given twice");
+  EXPECT_EQ(ErrorOf("include: parts.yaml\nmaterials:\n  elm: {}\n  oak: {}\n"),
+            "~/s.yaml:4: material 'oak' is given twice");
+  Write("parts.yaml", "groups: {stool: []}\n");
+  EXPECT_EQ(ErrorOf("include: parts.yaml\ngroups:\n  chair: []\n  stool: []\n"),
+            "~/s.yaml:4: group 'stool' is given twice");
   EXPECT_EQ(ErrorOf("materials:\n  oak: {}\n  default: {}\n"),
-            "~/s.yaml:2: material name 'default' is reserved for shapes without a material; choose "
+            "~/s.yaml:3: material name 'default' is reserved for shapes without a material; choose "
             "another name");
   EXPECT_EQ(ErrorOf("shapes: [{shape: mesh, file: none.obj}]\n"),
             "~/s.yaml:1: file is 'none.obj': no such file");
