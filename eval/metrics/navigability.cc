@@ -61,9 +61,16 @@ std::vector<Errand> DrawErrands(const CellSet& passable, const CellSet& allowed,
   return errands;
 }
 
-bool Collides(const std::vector<Cell>& path, const CellSet& truly_passable) {
+// The cells that the centre of the robot may be in.
+struct PassableCells {
+  CellSet of_truth;       // with the planner's margin, in the true map
+  CellSet of_estimate;    // the same in the estimated map
+  CellSet not_colliding;  // without the margin, in the true map
+};
+
+bool Collides(const std::vector<Cell>& path, const CellSet& not_colliding) {
   for (const Cell& cell : path) {
-    if (!truly_passable.Has(cell)) return true;
+    if (!not_colliding.Has(cell)) return true;
   }
   return false;
 }
@@ -73,10 +80,9 @@ struct PlanTally {
   double length_ratios = 0.0;
 };
 
-void Run(const Errand& errand, const CellSet& true_plan, const CellSet& judge, const CellSet& plan,
-         PlanTally& tally) {
-  const GridPaths true_ways(true_plan, errand.start, errand.goals);
-  const GridPaths ways(plan, errand.start, errand.goals);
+void Run(const Errand& errand, const PassableCells& passable, PlanTally& tally) {
+  const GridPaths true_ways(passable.of_truth, errand.start, errand.goals);
+  const GridPaths ways(passable.of_estimate, errand.start, errand.goals);
   for (const Cell& goal : errand.goals) {
     const auto true_length = true_ways.LengthCells(goal);
     if (!true_length) continue;
@@ -85,7 +91,7 @@ void Run(const Errand& errand, const CellSet& true_plan, const CellSet& judge, c
     if (!length) continue;
     ++tally.result.planned;
     tally.length_ratios += *length / *true_length;
-    tally.result.collisions += Collides(ways.PathTo(goal), judge) ? 1 : 0;
+    tally.result.collisions += Collides(ways.PathTo(goal), passable.not_colliding) ? 1 : 0;
   }
 }
 
@@ -106,12 +112,12 @@ void NavigabilityOptions::Visit(OptionsVisitor& v) {
 std::optional<Navigability> Navigate(const StateMap& truth, const StateMap& estimate,
                                      const CellSet& allowed, const NavigabilityOptions& options) {
   const double keep_m = options.robot_radius_m + options.margin_m;
-  const CellSet true_plan = Passable(truth, keep_m);
-  const CellSet judge = Passable(truth, options.robot_radius_m);
-  const CellSet plan = Passable(estimate, keep_m);
+  const PassableCells passable = {.of_truth = Passable(truth, keep_m),
+                                  .of_estimate = Passable(estimate, keep_m),
+                                  .not_colliding = Passable(truth, options.robot_radius_m)};
   PlanTally tally;
-  for (const Errand& errand : DrawErrands(true_plan, allowed, options)) {
-    Run(errand, true_plan, judge, plan, tally);
+  for (const Errand& errand : DrawErrands(passable.of_truth, allowed, options)) {
+    Run(errand, passable, tally);
   }
   Navigability& result = tally.result;
   if (result.pairs == 0) return std::nullopt;
