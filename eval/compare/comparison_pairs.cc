@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -22,25 +21,14 @@ std::string ValueAt(const SweepParameter& parameter, std::size_t row) {
   return ShortestYaml(parameter.texts[row]);
 }
 
-bool HasAxis(const SweepResults& table, const std::string& key) {
-  return std::any_of(table.parameters.begin(), table.parameters.end(),
-                     [&](const SweepParameter& p) { return p.key == key; });
-}
-
-bool IsFixed(const std::vector<Condition>& where, const std::string& key) {
-  return std::any_of(where.begin(), where.end(),
-                     [&](const Condition& c) { return c.first == key; });
-}
-
 // Axes of both sides that no condition fixes.
 std::vector<std::string> SharedAxes(const SweepResults& a, const SweepResults& b,
                                     const CompareOptions& options) {
   std::vector<std::string> keys;
   for (const SweepParameter& parameter : a.parameters) {
     const std::string& key = parameter.key;
-    if (!HasAxis(b, key) || IsFixed(options.where_a, key) || IsFixed(options.where_b, key))
-      continue;
-    keys.push_back(key);
+    const bool is_fixed = NamesKey(options.where_a, key) || NamesKey(options.where_b, key);
+    if (b.HasParameter(key) && !is_fixed) keys.push_back(key);
   }
   return keys;
 }
@@ -140,8 +128,8 @@ void AddFixedDifferences(const SweepResults& a, const std::vector<std::size_t>& 
                          const CompareOptions& options, std::vector<DifferentSetting>& different) {
   for (DifferentSetting& setting : FixedDifferences(FixedIn(a, rows_a), FixedIn(b, rows_b))) {
     const std::string& key = setting.key;
-    const bool by_condition = IsFixed(options.where_a, key) && IsFixed(options.where_b, key);
-    if (by_condition || (HasAxis(a, key) && HasAxis(b, key))) continue;
+    const bool by_condition = NamesKey(options.where_a, key) && NamesKey(options.where_b, key);
+    if (by_condition || (a.HasParameter(key) && b.HasParameter(key))) continue;
     different.push_back(std::move(setting));
   }
 }
@@ -192,22 +180,15 @@ struct Pair {
   Key rest;  // the other values that it is paired by
 };
 
-void AddScores(const SweepResults& table, std::size_t row, std::vector<std::uint64_t>& bits) {
-  for (const SweepColumn& column : table.metrics) {
-    bits.push_back(std::bit_cast<std::uint64_t>(column.values[row]));
-  }
-}
-
 // Seeds that gave the same as another one in every score of every pair, as where nothing is random:
 // together they are one measurement.
 std::set<Key> RepeatedSeeds(const SweepResults& a, const SweepResults& b,
                             const std::vector<Pair>& pairs) {
-  using Scores = std::map<Key, std::vector<std::uint64_t>>;
+  using Bits = std::vector<std::uint64_t>;
+  using Scores = std::map<Key, std::pair<Bits, Bits>>;  // of both sides, by the other values
   std::map<Key, Scores> by_seed;
   for (const Pair& pair : pairs) {
-    std::vector<std::uint64_t>& bits = by_seed[pair.seeds][pair.rest];
-    AddScores(a, pair.a, bits);
-    AddScores(b, pair.b, bits);
+    by_seed[pair.seeds][pair.rest] = {a.ScoreBits(pair.a), b.ScoreBits(pair.b)};
   }
   std::set<Scores> known;
   std::set<Key> repeated;

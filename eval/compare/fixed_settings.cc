@@ -28,27 +28,12 @@ bool IsOfTheRoom(const std::string& key) {
   return key == "scene" || key == "trajectory" || key == "movers";
 }
 
-bool HasParameter(const SweepResults& table, const std::string& key) {
-  return std::any_of(table.parameters.begin(), table.parameters.end(),
-                     [&](const SweepParameter& p) { return p.key == key; });
-}
-
-bool NamesKey(const std::vector<Condition>& where, const std::string& key) {
-  return std::any_of(where.begin(), where.end(),
-                     [&](const Condition& c) { return c.first == key; });
-}
-
-std::string EnvironmentText(const SweepResults& table, const char* key) {
-  const auto found = table.environment.find(key);
-  return found == table.environment.end() ? "" : found->second;
-}
-
 FixedSettings OfASweep(const SweepResults& table) {
   FixedSettings fixed;
-  const std::string experiment = EnvironmentText(table, "experiment");
+  const std::string experiment = table.EnvironmentText("experiment");
   if (experiment.empty()) return fixed;
   fixed.values = LeavesOf(Config::FromText(experiment, table.folder));
-  const std::string given = EnvironmentText(table, "given");
+  const std::string given = table.EnvironmentText("given");
   if (given.empty()) return fixed;
   for (const auto& leaf : LeavesOf(Config::FromText(given, table.folder))) {
     fixed.given.push_back(leaf.first);
@@ -76,7 +61,7 @@ FixedSettings OfRuns(const SweepResults& table) {
 // Hashes of the sweep's rooms with their paths, by name.
 std::map<std::string, std::string> RoomHashes(const SweepResults& table) {
   std::map<std::string, std::string> hashes;
-  std::istringstream lines(EnvironmentText(table, "rooms"));
+  std::istringstream lines(table.EnvironmentText("rooms"));
   for (std::string line; std::getline(lines, line);) {
     const auto colon = line.rfind(": ");
     if (colon != std::string::npos) hashes[line.substr(0, colon)] = line.substr(colon + 2);
@@ -101,7 +86,7 @@ void AddConditionsOf(const std::vector<Condition>& where, const FixedSettings& f
                      SweepResults& table) {
   for (const Condition& condition : where) {
     const std::string* value = fixed.Find(condition.first);
-    if (value && !HasParameter(table, condition.first))
+    if (value && !table.HasParameter(condition.first))
       AddFixedColumn(condition.first, *value, table);
   }
 }
@@ -165,6 +150,11 @@ bool MakesPairs(const std::string& key) {
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 
+bool NamesKey(const std::vector<Condition>& where, const std::string& key) {
+  return std::any_of(where.begin(), where.end(),
+                     [&](const Condition& c) { return c.first == key; });
+}
+
 const std::string* FixedSettings::Find(const std::string& key) const {
   for (const auto& [name, value] : values) {
     if (name == key) return &value;
@@ -174,7 +164,7 @@ const std::string* FixedSettings::Find(const std::string& key) const {
 
 FixedSettings FixedSettingsOf(const SweepResults& table) {
   FixedSettings fixed = table.run_folders.empty() ? OfASweep(table) : OfRuns(table);
-  std::erase_if(fixed.values, [&](const auto& leaf) { return HasParameter(table, leaf.first); });
+  std::erase_if(fixed.values, [&](const auto& leaf) { return table.HasParameter(leaf.first); });
   return fixed;
 }
 
@@ -192,8 +182,8 @@ void AlignFixedSettings(const CompareOptions& options, SweepResults& a, SweepRes
     const std::string* in_b = fixed_b.Find(key);
     if (in_a && in_b && !(one_room && IsOfTheRoom(key))) RequireSameValue(key, *in_a, a, *in_b, b);
     if (IsSeedKey(key)) continue;
-    if (in_a && HasParameter(b, key)) AddFixedColumn(key, AsOnThatAxis(key, *in_a, b), a);
-    if (in_b && HasParameter(a, key) && !in_a) AddFixedColumn(key, AsOnThatAxis(key, *in_b, a), b);
+    if (in_a && b.HasParameter(key)) AddFixedColumn(key, AsOnThatAxis(key, *in_a, b), a);
+    if (in_b && a.HasParameter(key) && !in_a) AddFixedColumn(key, AsOnThatAxis(key, *in_b, a), b);
   }
   RequireSameContents(rooms_a, rooms_b, a, b);
 }

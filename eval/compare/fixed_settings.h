@@ -12,6 +12,9 @@ namespace depthgrid {
 // Keys that determine what is seen: runs that differ in them cannot be a pair. Seeds among them.
 bool MakesPairs(const std::string& key);
 
+// Whether one of the conditions is on this axis.
+bool NamesKey(const std::vector<Condition>& where, const std::string& key);
+
 struct FixedSettings {
   std::vector<std::pair<std::string, std::string>> values;  // by key path, in the order of the file
   std::vector<std::string> given;  // of these, set by a file or the command line (sweeps only)

@@ -1,7 +1,6 @@
 #include "eval/compare/sweep_grid.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -47,11 +46,8 @@ std::vector<std::size_t> Measurements(const SweepResults& results, const SweepGr
   for (const GridPoint& point : grid.points) {
     std::map<std::vector<std::uint64_t>, std::size_t> row_of_scores;
     for (const std::size_t row : point.rows) {
-      std::vector<std::uint64_t> bits;
-      for (const SweepColumn& column : results.metrics) {
-        bits.push_back(std::bit_cast<std::uint64_t>(column.values[row]));
-      }
-      measurement_of_row[row] = row_of_scores.try_emplace(std::move(bits), row).first->second;
+      measurement_of_row[row] =
+          row_of_scores.try_emplace(results.ScoreBits(row), row).first->second;
     }
   }
   return measurement_of_row;

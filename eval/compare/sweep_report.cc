@@ -66,21 +66,16 @@ BootstrapOptions BootstrapFor(const SweepResults& results, bool main_metric) {
 
 // A value for the command of a run, which is started in the sweep's folder.
 std::string SetText(const SweepResults& results, const std::string& key, const std::string& text) {
-  const auto folder = results.environment.find("files_from");
+  const std::string folder = results.EnvironmentText("files_from");
   const bool is_file = IsFileKey(key) && IsFileName(text);
-  if (!is_file || folder == results.environment.end()) return text;
-  return (fs::path(folder->second) / text).lexically_normal().string();
-}
-
-std::string TextOf(const SweepResults& results, const char* key) {
-  const auto found = results.environment.find(key);
-  return found != results.environment.end() ? found->second : "";
+  if (!is_file || folder.empty()) return text;
+  return (fs::path(folder) / text).lexically_normal().string();
 }
 
 // The scenes' own names, by the values of their key (SceneNamesText).
 std::map<std::string, std::string> SceneNames(const SweepResults& results) {
   std::map<std::string, std::string> names;
-  std::istringstream lines(TextOf(results, "scene_names"));
+  std::istringstream lines(results.EnvironmentText("scene_names"));
   for (std::string line; std::getline(lines, line);) {
     const auto equals = line.find(" = ");
     if (equals != std::string::npos) names[line.substr(0, equals)] = line.substr(equals + 3);
@@ -288,7 +283,7 @@ Json SweepJson(const SweepResults& results, const SweepGrid& grid) {
 std::string MeasuredBy(const SweepResults& results) {
   std::set<std::string> varied;
   for (const SweepParameter& parameter : results.parameters) varied.insert(parameter.key);
-  const std::string experiment = TextOf(results, "experiment");
+  const std::string experiment = results.EnvironmentText("experiment");
   if (experiment.empty()) return "";
   const std::map<std::string, std::string> scenes = SceneNames(results);
   return MeasuredSettings(Config::FromText(experiment, results.folder), varied,
@@ -299,8 +294,8 @@ std::string MeasuredBy(const SweepResults& results) {
 // (slam.profile) sets the same keys as in the sweep. Sweeps of earlier versions have only all
 // effective keys.
 std::string ExperimentYaml(const SweepResults& results) {
-  const std::string given = TextOf(results, "given");
-  if (given.empty()) return TextOf(results, "experiment");
+  const std::string given = results.EnvironmentText("given");
+  if (given.empty()) return results.EnvironmentText("experiment");
   Config experiment;
   for (const ConfigEntry& entry : Config::FromText(given, results.folder).Entries()) {
     experiment.Set(entry.key, entry.text);
@@ -315,9 +310,9 @@ void WriteSweepReport(const std::string& folder, const ReportPlace& place) {
   if (results.rows() == 0) throw InputError(folder, "no run of this sweep is finished yet");
   const std::string experiment = ExperimentYaml(results);
   if (!experiment.empty()) WriteFile(place.into + "/experiment.yaml", experiment);
-  const std::string again = TextOf(results, "again");
+  const std::string again = results.EnvironmentText("again");
   if (!again.empty()) WriteFile(place.into + "/sweep_again.yaml", again);
-  const std::string title = TextOf(results, "title");
+  const std::string title = results.EnvironmentText("title");
   Json json = SweepJson(results, GridOf(results));
   json["back"] = place.back;
   json["of"] = MeasuredBy(results);

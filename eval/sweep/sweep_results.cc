@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 
@@ -65,6 +66,24 @@ bool SweepParameter::IsSeed() const { return IsSeedKey(key); }
 
 bool SweepParameter::IsNumeric() const {
   return std::none_of(numbers.begin(), numbers.end(), [](double v) { return std::isnan(v); });
+}
+
+bool SweepResults::HasParameter(const std::string& key) const {
+  return std::any_of(parameters.begin(), parameters.end(),
+                     [&](const SweepParameter& parameter) { return parameter.key == key; });
+}
+
+std::string SweepResults::EnvironmentText(const std::string& key) const {
+  const auto found = environment.find(key);
+  return found == environment.end() ? "" : found->second;
+}
+
+std::vector<std::uint64_t> SweepResults::ScoreBits(std::size_t row) const {
+  std::vector<std::uint64_t> bits;
+  for (const SweepColumn& column : metrics) {
+    bits.push_back(std::bit_cast<std::uint64_t>(column.values[row]));
+  }
+  return bits;
 }
 
 const SweepParameter& SweepResults::Parameter(const std::string& key) const {

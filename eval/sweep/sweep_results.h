@@ -2,6 +2,8 @@
 // (docs/sweeps.md).
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <map>
 #include <string>
 #include <vector>
@@ -43,6 +45,12 @@ struct SweepResults {
   std::vector<SweepColumn> times;  // run times, not reproducible
 
   std::size_t rows() const { return runs.size(); }
+  bool HasParameter(const std::string& key) const;
+  // Empty where the sweep's version did not write it.
+  std::string EnvironmentText(const std::string& key) const;
+  // The bits of all scores of a row. Runs with the same are one measurement, as where nothing in
+  // them is random.
+  std::vector<std::uint64_t> ScoreBits(std::size_t row) const;
   // Throw InputError, which suggests the nearest name, when there is none of that name.
   const SweepParameter& Parameter(const std::string& key) const;
   const std::vector<double>& Metric(const std::string& name) const;
