@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "eval/experiment/default_values.h"
+#include "eval/experiment/shipped.h"
 
 namespace depthgrid {
 namespace {
@@ -107,6 +108,7 @@ void AddSlam(const SlamOptions& slam, const std::string& exact, IdleSettingList&
   if (!WouldDrift(slam)) {
     add({"drift_scale"}, "SLAM does not drift");
   } else if (slam.drift_scale == 0.0) {
+    // Not `exact`: the scale is the nearer reason.
     for (const char* key : {"walk_translation_m", "walk_rotation_deg", "drift_speed_mps",
                             "drift_turn_dps", "drift_time_s"}) {
       idle.push_back({std::string("slam.") + key, stands("drift_scale")});
@@ -199,7 +201,7 @@ void AddSensor(const SensorOptions& sensor, IdleSettingList& idle) {
 }
 
 void AddSeeds(const ExperimentOptions& options, IdleSettingList& idle) {
-  if (options.trajectory.find('/') != std::string::npos) {
+  if (IsFileName(options.trajectory)) {
     idle.push_back({"trajectory_seed", "the path is a file's"});
   }
   const std::string exact = WhyExact(options.slam);

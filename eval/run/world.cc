@@ -84,14 +84,8 @@ const std::string& NamedTrajectory(const Scene& scene, const ExperimentOptions& 
                      options));
 }
 
-Eigen::AlignedBox3d BoundsOfMesh(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3d bounds;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) bounds.extend(vertex.cast<double>());
-  return bounds;
-}
-
 CameraSpace SpaceOf(const Scene& scene) {
-  return {BoundsOfMesh(scene.mesh), !scene.ceiling_z_m.has_value()};
+  return {BoundsOf(scene.mesh).cast<double>(), !scene.ceiling_z_m.has_value()};
 }
 
 Trajectory FromScene(const Scene& scene, const RayScene& rays, const MoverScene& movers,
@@ -209,15 +203,13 @@ std::optional<std::string> DoubtOfFile(const Trajectory& trajectory, const Scene
   return options.trajectory + ": " + *doubt;
 }
 
-bool IsFile(const std::string& name) { return name.find('/') != std::string::npos; }
-
 void AddPathFile(const ExperimentOptions& options, ContentHash& hash) {
   RequireTrajectoryFile(options);
   hash.Text(ReadFile(options.trajectory));
 }
 
 void AddPath(const Scene& scene, const ExperimentOptions& options, ContentHash& hash) {
-  if (IsFile(options.trajectory)) return AddPathFile(options, hash);
+  if (IsFileName(options.trajectory)) return AddPathFile(options, hash);
   const TrajectoryOptions& path = scene.trajectories.at(NamedTrajectory(scene, options));
   hash.Text(ToYaml(path));
   for (const Waypoint& waypoint : path.waypoints) hash.Text(ToYaml(waypoint));
@@ -232,7 +224,7 @@ WorldHashes HashesOf(const Scene& scene, const ExperimentOptions& options) {
 }  // namespace
 
 std::string PlaceOfPath(const Scene& scene, const ExperimentOptions& options) {
-  if (IsFile(options.trajectory)) return options.trajectory;
+  if (IsFileName(options.trajectory)) return options.trajectory;
   return scene.trajectories.at(NamedTrajectory(scene, options)).place;
 }
 
@@ -258,7 +250,7 @@ void RequireMovers(const ExperimentOptions& options) { SceneOf(options); }
 
 void RequireNames(const ExperimentOptions& options) {
   const Scene scene = SceneOf(options);
-  if (!IsFile(options.trajectory)) {
+  if (!IsFileName(options.trajectory)) {
     NamedTrajectory(scene, options);
     return;
   }
@@ -287,15 +279,14 @@ void CheckMovers(const Trajectory& trajectory, const TrajectoryOptions& path, co
 }
 
 // Warns of movers given by name that are never seen; for `all`, only if none is seen.
-void AddDoubtOfMovers(const ExperimentOptions& options, const World& world,
-                      std::vector<std::string>& doubts) {
+std::optional<std::string> DoubtOfMovers(const ExperimentOptions& options, const World& world) {
   std::vector<std::string> unseen =
       UnseenMovers(world.trajectory, world.scene, world.rays, world.movers, world.camera,
                    world.depth_range.max_m);
-  if (unseen.empty()) return;
-  if (options.movers == kAllMovers && unseen.size() < world.movers.size()) return;
-  doubts.push_back(fmt::format("movers: {}: no frame of this path shows {}",
-                               fmt::join(unseen, ", "), unseen.size() == 1 ? "it" : "them"));
+  if (unseen.empty()) return {};
+  if (options.movers == kAllMovers && unseen.size() < world.movers.size()) return {};
+  return fmt::format("movers: {}: no frame of this path shows {}", fmt::join(unseen, ", "),
+                     unseen.size() == 1 ? "it" : "them");
 }
 
 World LoadWorld(const ExperimentOptions& options, int build_threads) {
@@ -305,8 +296,8 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
   const PinholeCamera camera = SensorCamera(options.sensor);
   std::vector<std::string> doubts;
   Trajectory trajectory;
-  if (IsFile(options.trajectory)) {
-    trajectory = FromFile(options, BoundsOfMesh(scene.mesh), doubts);
+  if (IsFileName(options.trajectory)) {
+    trajectory = FromFile(options, BoundsOf(scene.mesh).cast<double>(), doubts);
     const auto doubt = DoubtOfFile(trajectory, scene, rays, options);
     if (doubt) doubts.push_back(*doubt);
     const auto near = NearMoverText(trajectory, scene, movers, kLeastClearanceM);
@@ -318,7 +309,7 @@ World LoadWorld(const ExperimentOptions& options, int build_threads) {
   World world = {
       std::move(scene), std::move(hashes),           std::move(rays),       std::move(movers),
       camera,           SensorRange(options.sensor), std::move(trajectory), std::move(doubts)};
-  AddDoubtOfMovers(options, world, world.path_doubts);
+  if (const auto doubt = DoubtOfMovers(options, world)) world.path_doubts.push_back(*doubt);
   return world;
 }
 
