@@ -8,6 +8,7 @@
 
 #include "eval/cli/commands.h"
 #include "eval/cli/console.h"
+#include "eval/cli/map_score_table.h"
 #include "eval/files/one_grid.h"
 #include "eval/files/one_result.h"
 #include "eval/files/shell_word.h"
@@ -22,8 +23,6 @@ namespace depthgrid::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-using Row = std::vector<std::string>;
 
 // Rejects a run's folder, which contains both maps.
 void RequireNoFolder(const std::string& path, const char* name) {
@@ -61,7 +60,9 @@ std::optional<int> TimesLarger(double fine_m, double coarse_m) {
 struct ComparedMaps {
   StateMap truth;
   OccupancyMap estimate;
-  std::string note;  // how cell sizes were adapted; empty: not at all
+  std::string note;  // how one of them was coarsened; empty if neither was
+
+  bool AreCoarsened() const { return !note.empty(); }
 };
 
 std::string NoteOf(const std::string& fine, int times, double fine_m, const std::string& coarse,
@@ -114,6 +115,13 @@ PlacedWalls WallsOf(const MapFile& estimate) {
   return {CellsIn(StatesOf(estimate.map), CellState::kOccupied), estimate.world_from_grid};
 }
 
+// The map of observable cells: the given one, or the one beside the true map; empty without one.
+std::string ObservableFile(const EvalMapArguments& arguments) {
+  const fs::path beside = fs::path(arguments.reference).parent_path() / "observable.yaml";
+  return arguments.observable.empty() && fs::exists(beside) ? beside.string()
+                                                            : arguments.observable;
+}
+
 // The free cells of a map, in cells of size `cell_m`: those that contain a free cell.
 CellSet ReadObservable(const std::string& path, const Pose2& world_from_frame, double cell_m,
                        const std::string& place_of_cells) {
@@ -127,78 +135,6 @@ CellSet ReadObservable(const std::string& path, const Pose2& world_from_frame, d
   std::replace(states.states.begin(), states.states.end(), CellState::kOccupied,
                CellState::kUnknown);
   return CellsIn(Coarsened(states, *times, cell_m), CellState::kFree);
-}
-
-void AddRows(const std::string& name, const CellScores& scores, std::vector<Row>& rows) {
-  for (std::size_t tolerance = 0; tolerance < scores.occupied.size(); ++tolerance) {
-    const StateScore& walls = scores.occupied[tolerance];
-    const StateScore& free = scores.free[tolerance];
-    rows.push_back({fmt::format("{}, {} tolerance", name, Counted(tolerance, "cell")),
-                    Number(walls.precision, 4), Number(walls.recall, 4), Number(walls.f1, 4),
-                    Number(walls.iou, 4), Number(free.precision, 4), Number(free.recall, 4),
-                    Number(free.f1, 4), Number(free.iou, 4)});
-  }
-}
-
-void AddDistanceRow(const std::string& name, const CellScores& scores, std::vector<Row>& rows) {
-  rows.push_back({name, Number(scores.chamfer_m, 4), Number(scores.hausdorff95_m, 4),
-                  Number(scores.coverage, 4)});
-}
-
-Row WallRow(const std::string& name, const WallDistanceScore& score) {
-  return {name, Number(score.f1_5cm, 4), Number(score.f1_10cm, 4), Number(score.chamfer_m, 4),
-          Number(score.hausdorff95_m, 4)};
-}
-
-void PrintWalls(const MapQuality& quality) {
-  std::vector<Row> rows = {{"walls", "F1 5 cm", "F1 10 cm", "chamfer m", "Hausdorff 95 % m"},
-                           WallRow("as they lie", quality.walls)};
-  if (quality.registered) rows.push_back(WallRow("registered", *quality.registered));
-  fmt::print("\n{}", Table(rows));
-  if (quality.registration) {
-    const Pose2& motion = quality.registration->truth_from_estimate;
-    fmt::print("registered by x {:.4f} m, y {:.4f} m, yaw {:.3f} deg: {:.4f} m on average\n",
-               motion.x_m, motion.y_m, DegFromRad(motion.yaw_rad),
-               quality.registration->mean_shift_m);
-  }
-  if (FitsBetterAsItLies(quality)) {
-    fmt::print("the walls fit better without that motion: it is no error of the map\n");
-  }
-}
-
-std::optional<double> MeanOf(const std::optional<WallThickness>& thickness) {
-  return thickness ? std::optional(thickness->mean_m) : std::nullopt;
-}
-
-void PrintShape(const MapQuality& quality) {
-  const auto column = [](const std::string& name, const std::optional<WallThickness>& thickness,
-                         const TruthlessScore& s) -> Row {
-    return {name, Number(MeanOf(thickness), 4), Number(s.occupied_share, 4),
-            std::to_string(s.corners), std::to_string(s.enclosed_areas)};
-  };
-  fmt::print("\n{}",
-             Table({{"map", "wall thickness m", "occupied share", "corners", "enclosed areas"},
-                    column("estimate", quality.thickness, quality.truthless),
-                    column("truth", quality.true_thickness, quality.truthless_of_truth)}));
-}
-
-void PrintOthers(const MapQuality& quality) {
-  std::vector<Row> rows = {{"double wall rate", Number(quality.double_wall_rate, 4)},
-                           {"SSIM", Number(quality.ssim, 4)}};
-  if (quality.calibration) {
-    rows.push_back({"Brier score", Number(quality.calibration->brier, 4)});
-    rows.push_back({"log loss", Number(quality.calibration->log_loss, 4)});
-    rows.push_back({"calibration error", Number(quality.calibration->calibration_error, 4)});
-  }
-  if (quality.navigability) {
-    const Navigability& drive = *quality.navigability;
-    rows.push_back(
-        {fmt::format("{}: success", Counted(drive.pairs, "plan")), Number(drive.success_rate, 4)});
-    rows.push_back({"  falsely blocked", Number(drive.falsely_blocked_rate, 4)});
-    rows.push_back({"  collisions of the planned", Number(drive.collision_rate, 4)});
-    rows.push_back({"  length ratio", Number(drive.length_ratio, 4)});
-  }
-  fmt::print("\n{}", Table(rows));
 }
 
 int KnownToBoth(const CellScores& scores) {
@@ -311,22 +247,6 @@ std::optional<std::string> DoubtOfRegistration(const EvalMapArguments& arguments
       arguments.estimate, arguments.reference, f1);
 }
 
-void PrintTable(const MapScore& score) {
-  std::vector<Row> cells = {
-      {"cells", "precision", "recall", "F1", "IoU", "free precision", "recall", "F1", "IoU"}};
-  std::vector<Row> distances = {{"cells", "chamfer m", "Hausdorff 95 % m", "coverage"}};
-  if (score.observable) {
-    AddRows("observable", *score.observable, cells);
-    AddDistanceRow("observable", *score.observable, distances);
-  }
-  AddRows("all", score.all, cells);
-  AddDistanceRow("all", score.all, distances);
-  fmt::print("{}\n{}", Table(cells), Table(distances));
-  PrintWalls(*score.quality);
-  PrintShape(*score.quality);
-  PrintOthers(*score.quality);
-}
-
 }  // namespace
 
 void EvalMap(const EvalMapArguments& arguments) {
@@ -341,32 +261,32 @@ void EvalMap(const EvalMapArguments& arguments) {
   const MapFile given = ReadMap(arguments.estimate, world_from_truth);
   Warn(reference.doubts);
   Warn(given.doubts);
-  const auto [truth, estimate, note] =
-      InOneSize(StatesOf(reference.map), AlignedMap(given), arguments);
+  const ComparedMaps compared = InOneSize(StatesOf(reference.map), AlignedMap(given), arguments);
+  const StateMap& truth = compared.truth;
+  const OccupancyMap& estimate = compared.estimate;
   const bool redrawn = given.world_from_grid != Pose2{};
   const GridGeometry both =
       OneGridAround(truth.geometry, arguments.reference, estimate.geometry, arguments.estimate);
-  std::string observable_path = arguments.observable;
-  const fs::path beside = fs::path(arguments.reference).parent_path() / "observable.yaml";
-  if (observable_path.empty() && fs::exists(beside)) observable_path = beside.string();
+  const std::string observable_path = ObservableFile(arguments);
   std::optional<CellSet> observable;
   if (!observable_path.empty()) {
-    const double cell_m = truth.geometry.resolution_m;
-    observable = ReadObservable(observable_path, world_from_truth, cell_m,
-                                note.empty() ? arguments.reference : "the larger cells compared");
+    observable =
+        ReadObservable(observable_path, world_from_truth, truth.geometry.resolution_m,
+                       compared.AreCoarsened() ? "the larger cells compared" : arguments.reference);
     OneGridAround(both, arguments.reference, observable->geometry, observable_path);
   }
   MapScore score = ScoreMap(truth, StatesOf(estimate), observable);
-  // Coarsened maps are compared without separate walls.
-  const bool own = redrawn && note.empty();
+  // The walls of a redrawn map as its own cells have them, but for coarsened maps.
   const PlacedWalls walls =
-      own ? WallsOf(given) : PlacedWalls{CellsIn(StatesOf(estimate), CellState::kOccupied), {}};
+      redrawn && !compared.AreCoarsened()
+          ? WallsOf(given)
+          : PlacedWalls{CellsIn(StatesOf(estimate), CellState::kOccupied), {}};
   score.quality = ScoreMapQuality(truth, estimate, observable, {}, walls);
   if (auto& found = score.quality->registration) {
     Pose2& motion = found->truth_from_estimate;
     motion = world_from_truth * motion * Inverse(world_from_truth);
   }
-  if (!note.empty()) score.compared_cell_m = truth.geometry.resolution_m;
+  if (compared.AreCoarsened()) score.compared_cell_m = truth.geometry.resolution_m;
   std::vector<std::string> doubts = DoubtsOf(arguments, score, observable_path);
   const ScoredMaps maps = OnOneGeometry(truth, StatesOf(estimate), observable);
   if (const auto doubt =
@@ -382,8 +302,8 @@ void EvalMap(const EvalMapArguments& arguments) {
     fmt::print("{}", MetricsJson({}, &score));
   } else {
     if (redrawn) fmt::print("{}\n\n", Printable(RedrawnNote(given, arguments)));
-    if (!note.empty()) fmt::print("{}\n\n", Printable(note));
-    PrintTable(score);
+    if (compared.AreCoarsened()) fmt::print("{}\n\n", Printable(compared.note));
+    PrintMapScore(score);
   }
 }
 

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "eval/cli/console.h"
 #include "eval/doubts/mount_check.h"
 #include "eval/doubts/scale_check.h"
 #include "eval/doubts/way_check.h"

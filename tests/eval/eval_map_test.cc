@@ -31,6 +31,11 @@ class EvalMap : public ProgramTest {
                               "\norigin: [0.2, -0.2, 0]\nnegate: 0\noccupied_thresh: 0.65\n" +
                               "free_thresh: 0.196\n");
   }
+  // A map of room.pgm, at an origin "x, y, yaw".
+  void WriteAt(const std::string& name, const std::string& origin) const {
+    Write(name, "image: room.pgm\nresolution: 0.05\norigin: [" + origin + "]\nnegate: 0\n" +
+                    "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
+  }
   nlohmann::json Scores(const std::string& arguments) const {
     return nlohmann::json::parse(Program("eval map " + arguments + " --json").out)["map"];
   }
@@ -112,17 +117,13 @@ std::string RoomPgm() {
 // Of one image at two origins: all that differs is where it lies.
 TEST_F(EvalMap, AShiftIsFoundHoweverTheCellsLie) {
   Write("room.pgm", RoomPgm());
-  const auto write_at = [&](const std::string& name, const std::string& origin) {
-    Write(name, "image: room.pgm\nresolution: 0.05\norigin: [" + origin + "]\nnegate: 0\n" +
-                    "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
-  };
   for (const char* yaw : {"0", "0.4"}) {
-    write_at("truth.yaml", std::string("0.0249, -3.2, ") + yaw);
+    WriteAt("truth.yaml", std::string("0.0249, -3.2, ") + yaw);
     for (const auto& [x_m, y_m] :
          {std::pair(0.0, 0.0), std::pair(0.0002, 0.0), std::pair(0.025, 0.0), std::pair(0.05, 0.0),
           std::pair(0.074, -0.1), std::pair(-0.12, 0.13)}) {
-      write_at("est.yaml",
-               std::to_string(0.0249 + x_m) + ", " + std::to_string(-3.2 + y_m) + ", " + yaw);
+      WriteAt("est.yaml",
+              std::to_string(0.0249 + x_m) + ", " + std::to_string(-3.2 + y_m) + ", " + yaw);
       const nlohmann::json scores = Scores("truth.yaml est.yaml");
       EXPECT_NEAR(scores["registered"]["x_m"], -x_m, 1e-6) << x_m << yaw;
       EXPECT_NEAR(scores["registered"]["y_m"], -y_m, 1e-6) << y_m << yaw;
@@ -140,12 +141,8 @@ TEST_F(EvalMap, AShiftIsFoundHoweverTheCellsLie) {
 
 TEST_F(EvalMap, AMapThatIsTurnedIsSaid) {
   Write("room.pgm", RoomPgm());
-  const auto write_at = [&](const std::string& name, const std::string& origin) {
-    Write(name, "image: room.pgm\nresolution: 0.05\norigin: [" + origin + "]\nnegate: 0\n" +
-                    "occupied_thresh: 0.65\nfree_thresh: 0.196\n");
-  };
-  write_at("truth.yaml", "0, 0, 0");
-  write_at("turned.yaml", "2, -1, 1.5707963267948966");
+  WriteAt("truth.yaml", "0, 0, 0");
+  WriteAt("turned.yaml", "2, -1, 1.5707963267948966");
   EXPECT_THAT(Program("eval map truth.yaml turned.yaml").err,
               HasSubstr("turned.yaml: turned by -90 degrees, it would lie over truth.yaml"));
 }
