@@ -47,7 +47,7 @@ class Clocks {
       : reference_(reference), estimate_(SomeOf(estimate)) {
     std::size_t most = 0;
     for (double offset_s = -kMostClockOffsetS; offset_s <= kMostClockOffsetS;
-         offset_s += kStepsS[0]) {
+         offset_s += kCoarseStepS) {
       most = std::max(most, PairsAt(offset_s, offset_s).size());
     }
     least_ =
@@ -99,16 +99,19 @@ class Clocks {
       if (round_s != 0.0 && fits(round_s)) offset_s = round_s;
     }
     double unsure_s = 0.0;
-    for (const double step_s : {-kStepsS[1], kStepsS[1]}) {
-      for (int k = 1; k * kStepsS[1] <= kStepsS[0] && fits(offset_s + k * step_s); ++k) {
-        unsure_s = std::max(unsure_s, k * kStepsS[1]);
+    for (const double step_s : {-kMediumStepS, kMediumStepS}) {
+      for (int k = 1; k * kMediumStepS <= kCoarseStepS && fits(offset_s + k * step_s); ++k) {
+        unsure_s = std::max(unsure_s, k * kMediumStepS);
       }
     }
     return {offset_s, unsure_s};
   }
 
  private:
-  static constexpr double kStepsS[] = {0.1, 0.01, 0.001};
+  // Of the search, each around the best of the one before.
+  static constexpr double kCoarseStepS = 0.1;
+  static constexpr double kMediumStepS = 0.01;
+  static constexpr double kFineStepS = 0.001;
   // Share of the usual number of poses that an offset must leave: the fewer poses, the better any
   // offset fits.
   static constexpr double kLeastShare = 0.8;
@@ -126,7 +129,7 @@ class Clocks {
   double FinestOffset() const {
     double best_s = 0.0;
     double reach_s = kMostClockOffsetS;
-    for (const double step_s : kStepsS) {
+    for (const double step_s : {kCoarseStepS, kMediumStepS, kFineStepS}) {
       best_s = BestAround(best_s, step_s, reach_s);
       reach_s = step_s;
     }

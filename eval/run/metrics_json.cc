@@ -1,5 +1,6 @@
 #include "eval/run/metrics_json.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace depthgrid {
@@ -74,6 +75,14 @@ Json ToJson(const std::vector<Drift>& drifts, const char* over) {
   return rows;
 }
 
+// The lag and the length whose drift has a key of its own.
+constexpr double kMainDriftLagS = 10.0;
+constexpr double kMainDriftLengthM = 1.0;
+static_assert(std::find(kDriftLagsS.begin(), kDriftLagsS.end(), kMainDriftLagS) !=
+              kDriftLagsS.end());
+static_assert(std::find(kDriftLengthsM.begin(), kDriftLengthsM.end(), kMainDriftLengthM) !=
+              kDriftLengthsM.end());
+
 // Mean drift per unit, from the motions over `over` units.
 Json DriftAt(const std::vector<Drift>& drifts, double over) {
   for (const Drift& drift : drifts) {
@@ -100,8 +109,8 @@ Json ToJson(const TrajectoryScore& score) {
       {"rpe_frame_rmse_rad", RmseOf(score.rpe_frame_rotation)},
       {"rpe_metre_rmse_m", RmseOf(score.rpe_metre_translation)},
       {"rpe_metre_rmse_rad", RmseOf(score.rpe_metre_rotation)},
-      {"drift_m_per_s", DriftAt(score.drift_over_time, 10.0)},
-      {"drift_m_per_m", DriftAt(score.drift_over_path, 1.0)},
+      {"drift_m_per_s", DriftAt(score.drift_over_time, kMainDriftLagS)},
+      {"drift_m_per_m", DriftAt(score.drift_over_path, kMainDriftLengthM)},
       {"reference_poses", score.reference_poses},
       {"estimate_poses", score.estimate_poses},
       {"matched_poses", score.matched_poses},

@@ -136,6 +136,7 @@ CellSet ObservableCells(const TriangleMesh& mesh, double floor_z_m, const StateM
           "the truth map's own resolution");
   const HeightBand band = {floor_z_m + grid.band_low_m, floor_z_m + grid.band_high_m};
   const BandOutline outline = OutlineOf(mesh, band, truth);
+  // Not the sensor's instruction set: what could be seen does not depend on it.
   const RayScene fences(outline.fences, RayIsa::kAvx2, options.threads);
   const auto threads = static_cast<std::size_t>(options.threads);
   std::vector<Observer> observers(threads,
