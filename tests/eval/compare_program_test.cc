@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/eval/program.h"
+#include "tests/statistics/ten_runs.h"
 
 namespace depthgrid {
 namespace {
@@ -12,9 +13,6 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// Those of tests/statistics, where SciPy's figures for them stand.
-const std::vector<double> kErrorsOfA = {.407, .361, .455, .298, .512, .333, .420, .389, .275, .468};
-const std::vector<double> kErrorsOfB = {.312, .340, .301, .305, .344, .290, .377, .401, .262, .350};
 constexpr const char* kComparedScore = "trajectory.est.mean_euclidean_m";
 
 // Runs' folders with what is read of them.
@@ -30,18 +28,11 @@ class ProgramCompare : public ProgramTest {
             fmt::format(R"({{"trajectory": {{"est": {{"mean_euclidean_m": {}}}}}}})", errors[i]));
     }
   }
-  void ExpectRefusal(const std::string& arguments, const std::vector<std::string>& says) const {
-    const Outcome outcome = Program(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
-    for (const std::string& text : says) EXPECT_THAT(outcome.err, HasSubstr(text));
-    EXPECT_EQ(outcome.out, "");
-  }
 };
 
 TEST_F(ProgramCompare, FoldersOfRuns) {
-  WriteRuns("a", kErrorsOfA);
-  WriteRuns("b", kErrorsOfB);
+  WriteRuns("a", kA);
+  WriteRuns("b", kB);
   const Outcome table = Program("compare a b");
   EXPECT_EQ(table.exit_code, 0) << table.err;
   EXPECT_THAT(table.out, HasSubstr("10 pairs"));
@@ -81,8 +72,8 @@ TEST_F(ProgramCompare, SaysWhatIsOfRanksAndWhatIsLeftOut) {
 }
 
 TEST_F(ProgramCompare, SaysWhichRowsRestOnFewerPairs) {
-  WriteRuns("a", kErrorsOfA);
-  WriteRuns("b", kErrorsOfB);
+  WriteRuns("a", kA);
+  WriteRuns("b", kB);
   EXPECT_THAT(Program("compare a b").out, Not(HasSubstr("fewer pairs")));
   for (const char* run : {"b/2", "b/5", "b/6"}) {
     Write(std::string(run) + "/metrics.json",
@@ -121,13 +112,13 @@ TEST_F(ProgramCompare, SaysHowManyPairsAllRowsTake) {
 }
 
 TEST_F(ProgramCompare, AnotherMappersRunsArePairedByWhatTheyState) {
-  WriteRuns("a", kErrorsOfA);
-  for (std::size_t i = 0; i < kErrorsOfB.size(); ++i) {
+  WriteRuns("a", kA);
+  for (std::size_t i = 0; i < kB.size(); ++i) {
     const std::string run = fmt::format("other/{}", i);
     std::filesystem::create_directories(Path(run));
     Write(run + "/run.yaml", fmt::format("seed: {}\n", i + 1));
     Write(run + "/trajectory.json",
-          fmt::format(R"({{"trajectory": {{"est": {{"mean_euclidean_m": {}}}}}}})", kErrorsOfB[i]));
+          fmt::format(R"({{"trajectory": {{"est": {{"mean_euclidean_m": {}}}}}}})", kB[i]));
     Write(run + "/map.json", R"({"map": {"chamfer_m": 0.1}})");
   }
   const Outcome table = Program("compare a other");
@@ -140,7 +131,7 @@ TEST_F(ProgramCompare, AnotherMappersRunsArePairedByWhatTheyState) {
 }
 
 TEST_F(ProgramCompare, Refusals) {
-  WriteRuns("a", kErrorsOfA);
+  WriteRuns("a", kA);
   WriteRuns("b", {0.1, 0.2});
   ExpectRefusal("compare a nowhere", {"nowhere", "no such folder"});
   ExpectRefusal("compare a .", {".", "no run with scores"});

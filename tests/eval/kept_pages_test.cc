@@ -18,11 +18,6 @@ class KeptPages : public ProgramTest {
     Write("one.log", "FLASER 3 2 2 2 1.5 -2 0.25 1.5 -2 0.25 10.5 host 10.5\n");
     Write("sweep.yaml", "experiment: ./small.yaml\nset: {frames: 3}\naxes: {seed: [1, 2]}\n");
   }
-  void ExpectRefusal(const std::string& arguments, const std::string& says) const {
-    const Outcome outcome = Program(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments;
-    EXPECT_THAT(outcome.err, HasSubstr("depthgrid: " + says)) << arguments;
-  }
 };
 
 TEST_F(KeptPages, APageElsewhereReplacesNothingButPages) {
@@ -30,20 +25,20 @@ TEST_F(KeptPages, APageElsewhereReplacesNothingButPages) {
   Succeed("sweep ./sweep.yaml -o s");
   fs::create_directory(Path("mine"));
   Write("mine/report.html", "my notes");
-  ExpectRefusal("report m -o mine --force", "mine/report.html: is not a page of depthgrid's");
+  ExpectRefusal("report m -o mine --force", {"mine/report.html: is not a page of depthgrid's"});
   fs::remove(Path("mine/report.html"));
   for (const char* name : {"timing.js", "experiment.yaml", "sweep_again.yaml"}) {
     const std::string file = std::string("mine/") + name;
     Write(file, "mine");
     const std::string of = file.ends_with(".js") ? "m" : "s";
-    ExpectRefusal("report " + of + " -o mine --force", file + ": belongs to no page");
+    ExpectRefusal("report " + of + " -o mine --force", {file + ": belongs to no page"});
     EXPECT_EQ(ReadFile(Path(file)), "mine");
     fs::remove(Path(file));
   }
   // A run's page brings no experiment.yaml, so that this one is somebody's own.
   Succeed("report m -o mine --force");
   Write("mine/experiment.yaml", "mine");
-  ExpectRefusal("report s -o mine --force", "mine/experiment.yaml: belongs to no page");
+  ExpectRefusal("report s -o mine --force", {"mine/experiment.yaml: belongs to no page"});
   fs::remove(Path("mine/experiment.yaml"));
   // What a page came with goes with it.
   for (int i = 0; i < 2; ++i) Succeed("report s -o mine --force");
@@ -51,7 +46,7 @@ TEST_F(KeptPages, APageElsewhereReplacesNothingButPages) {
               ElementsAre("experiment.yaml", "report.html", "sweep_again.yaml", "timing.js"));
   fs::remove(Path("mine/experiment.yaml"));
   fs::create_symlink("../elsewhere.yaml", Path("mine/experiment.yaml"));
-  ExpectRefusal("report s -o mine --force", "mine/experiment.yaml: is a link, so it is kept");
+  ExpectRefusal("report s -o mine --force", {"mine/experiment.yaml: is a link, so it is kept"});
 }
 
 // Somebody's picture among those of a run is none of its frames.

@@ -64,10 +64,6 @@ TEST(Wilcoxon, ChoosesTheMethodAsSciPyDoes) {
   EXPECT_NEAR(sixty.p_value, 0.1532484058834784, 1e-12);
 }
 
-// Ties and zeros. The normal figure is wilcoxon(x, mode='approx'); SciPy has no exact one, so:
-//   x = x[x != 0]; r = rankdata(abs(x)); T = (r * (x > 0)).sum(); n = len(x)
-//   W = ((np.arange(2**n)[:, None] >> np.arange(n)) & 1) @ r
-//   2 * min((W <= T).mean(), (W >= T).mean())
 // Where the sum of all ranks is more than an int holds.
 TEST(Wilcoxon, OfManyPairs) {
   std::vector<double> differences;
@@ -77,6 +73,10 @@ TEST(Wilcoxon, OfManyPairs) {
   EXPECT_EQ(result.p_value, 0.0);
 }
 
+// The normal figure is wilcoxon(x, mode='approx'); SciPy has no exact one, so:
+//   x = x[x != 0]; r = rankdata(abs(x)); T = (r * (x > 0)).sum(); n = len(x)
+//   W = ((np.arange(2**n)[:, None] >> np.arange(n)) & 1) @ r
+//   2 * min((W <= T).mean(), (W >= T).mean())
 TEST(Wilcoxon, TiesAndZeros) {
   const std::vector<double> x = {1, -1, 2, 2, -3, 4, 0, 0, 5, 5, -2, 7, 8, 1};
   const WilcoxonResult normal = Wilcoxon(x, WilcoxonMethod::kNormal);
