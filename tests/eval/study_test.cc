@@ -53,10 +53,10 @@ TEST_F(StudyRun, EachCaseHasTheWarningsThatItWouldHaveAlone) {
   Write("lost.yaml", R"(
 frames: 90
 seed: 5
-sensor: {width: 160, height: 120}
+sensor: {width: 80, height: 60}
 cases:
-  - {name: lost, scene: living_room, slam: {profile: orb_slam2, lost_rate_hz: 3}}
-  - {name: truth, scene: living_room, slam: {profile: ground_truth}}
+  - {name: lost, scene: ./room.yaml, slam: {profile: orb_slam2, lost_rate_hz: 3}}
+  - {name: truth, scene: ./room.yaml, slam: {profile: ground_truth}}
 )");
   Succeed("run ./lost.yaml -o out");
   Succeed("run out/lost/run.yaml -o alone");
