@@ -6,7 +6,6 @@
 
 #include "eval/metrics/cell_maps.h"
 #include "eval/metrics/distance_transform.h"
-#include "eval/metrics/statistics.h"
 #include "eval/metrics/wall_distances.h"
 
 namespace depthgrid {
@@ -65,16 +64,10 @@ bool IsEmpty(const CellSet& mask) {
   return std::find(mask.members.begin(), mask.members.end(), 1) == mask.members.end();
 }
 
-void ScoreDistances(const CellSet& truth, const CellSet& estimate, const CellSet& scored,
-                    CellScores& scores) {
-  if (IsEmpty(truth) || IsEmpty(estimate)) return;
-  const auto forth = DirectedDistances(estimate, scored, SquaredDistances(truth));
-  const auto back = DirectedDistances(truth, scored, SquaredDistances(estimate));
-  if (!forth.empty()) scores.estimate_to_truth_m = Summarise(forth).mean;
-  if (!back.empty()) scores.truth_to_estimate_m = Summarise(back).mean;
-  if (forth.empty() || back.empty()) return;
-  scores.chamfer_m = 0.5 * (*scores.estimate_to_truth_m + *scores.truth_to_estimate_m);
-  scores.hausdorff95_m = Hausdorff95(forth, back);
+DistanceScore ScoreDistances(const CellSet& truth, const CellSet& estimate, const CellSet& scored) {
+  if (IsEmpty(truth) || IsEmpty(estimate)) return {};
+  return ScoreOfDistances(DirectedDistances(estimate, scored, SquaredDistances(truth)),
+                          DirectedDistances(truth, scored, SquaredDistances(estimate)));
 }
 
 void ScoreConfusion(const StateMap& truth, const StateMap& estimate, const CellSet& scored,
@@ -110,11 +103,12 @@ std::optional<double> Matthews(const CellScores& scores, CellState state) {
 // All maps on one geometry; `to_cover` are the cells that coverage asks for.
 CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const CellSet& scored,
                       const CellSet& to_cover) {
-  CellScores scores;
   const CellSet true_walls = CellsIn(truth, CellState::kOccupied);
   const CellSet walls = CellsIn(estimate, CellState::kOccupied);
   const CellSet true_free = CellsIn(truth, CellState::kFree);
   const CellSet free = CellsIn(estimate, CellState::kFree);
+  CellScores scores;
+  static_cast<DistanceScore&>(scores) = ScoreDistances(true_walls, walls, scored);
   for (int tolerance = 0; tolerance <= kMaxToleranceCells; ++tolerance) {
     const auto index = static_cast<std::size_t>(tolerance);
     scores.occupied[index] = ScoreState(true_walls, walls, scored, tolerance);
@@ -123,7 +117,6 @@ CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const Cel
   ScoreConfusion(truth, estimate, scored, scores);
   scores.occupied_mcc = Matthews(scores, CellState::kOccupied);
   scores.free_mcc = Matthews(scores, CellState::kFree);
-  ScoreDistances(true_walls, walls, scored, scores);
   const int asked = CountBoth(to_cover, to_cover);
   scores.coverage = Ratio(CountBoth(to_cover, walls) + CountBoth(to_cover, free), asked);
   return scores;

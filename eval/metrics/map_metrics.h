@@ -35,7 +35,9 @@ struct StateScore {
   std::optional<double> iou;
 };
 
-struct CellScores {
+// Distances are between centres of occupied cells; of those that are scored to all of the other
+// map. Empty when either map has none.
+struct CellScores : DistanceScore {
   std::array<StateScore, kMaxToleranceCells + 1> occupied;  // by tolerance in cells
   std::array<StateScore, kMaxToleranceCells + 1> free;
   // [truth][estimate], indexed by CellState.
@@ -44,13 +46,6 @@ struct CellScores {
   // tolerance 0; empty when it is constant in either map.
   std::optional<double> occupied_mcc;
   std::optional<double> free_mcc;
-  // Between occupied cell centres; empty when either map has none. The directed distances are from
-  // the scored estimated cells to all true ones and from the scored true cells to all estimated
-  // ones.
-  std::optional<double> chamfer_m;            // mean of the two directed means
-  std::optional<double> estimate_to_truth_m;  // directed mean
-  std::optional<double> truth_to_estimate_m;  // directed mean
-  std::optional<double> hausdorff95_m;        // larger of the two directed 95th percentiles
   // Share of the scored cells with known truth that are known in the estimate; for the observable
   // score, share of all observable cells.
   std::optional<double> coverage;

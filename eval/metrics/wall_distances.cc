@@ -71,22 +71,31 @@ std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
   return distances_m;
 }
 
-double Hausdorff95(const std::vector<double>& forth, const std::vector<double>& back) {
+DistanceScore ScoreOfDistances(const std::vector<double>& estimate_to_truth_m,
+                               const std::vector<double>& truth_to_estimate_m) {
   constexpr double kFraction = 0.95;
-  return std::max(Percentile(forth, kFraction), Percentile(back, kFraction));
+  DistanceScore score;
+  if (!estimate_to_truth_m.empty()) {
+    score.estimate_to_truth_m = Summarise(estimate_to_truth_m).mean;
+  }
+  if (!truth_to_estimate_m.empty()) {
+    score.truth_to_estimate_m = Summarise(truth_to_estimate_m).mean;
+  }
+  if (estimate_to_truth_m.empty() || truth_to_estimate_m.empty()) return score;
+  score.chamfer_m = 0.5 * (*score.estimate_to_truth_m + *score.truth_to_estimate_m);
+  score.hausdorff95_m = std::max(Percentile(estimate_to_truth_m, kFraction),
+                                 Percentile(truth_to_estimate_m, kFraction));
+  return score;
 }
 
 WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
                                      const CellSet& scored, const Pose2& truth_from_estimate) {
-  WallDistanceScore score;
   const std::vector<Eigen::Vector2d> points = Moved(truth_from_estimate, CentresOf(walls));
   const auto [forth_m, back_m] =
       DistancesOf(true_walls, CentresOf(true_walls), points, points, scored);
-  if (!forth_m.empty()) score.estimate_to_truth_m = Summarise(forth_m).mean;
-  if (!back_m.empty()) score.truth_to_estimate_m = Summarise(back_m).mean;
+  WallDistanceScore score;
+  static_cast<DistanceScore&>(score) = ScoreOfDistances(forth_m, back_m);
   if (forth_m.empty() || back_m.empty()) return score;
-  score.chamfer_m = 0.5 * (*score.estimate_to_truth_m + *score.truth_to_estimate_m);
-  score.hausdorff95_m = Hausdorff95(forth_m, back_m);
   score.f1_5cm = F1Of(ShareWithin(forth_m, 0.05), ShareWithin(back_m, 0.05));
   score.f1_10cm = F1Of(ShareWithin(forth_m, 0.10), ShareWithin(back_m, 0.10));
   return score;

@@ -16,17 +16,23 @@ namespace depthgrid {
 std::vector<double> NearestDistances(const std::vector<Eigen::Vector2d>& points,
                                      const std::vector<Eigen::Vector2d>& targets);
 
-// The greater of the 95th percentiles of the distances forth and back: the Hausdorff distance but
-// for a twentieth of the points. At least one of each.
-double Hausdorff95(const std::vector<double>& forth, const std::vector<double>& back);
-
-struct WallDistanceScore {
+// Distances between the walls of two maps, metres. Empty without a wall that counts.
+struct DistanceScore {
   // Santos et al. 2013: mean distance to the nearest wall of the other map ("normalised error" and
-  // its reverse), metres.
+  // its reverse).
   std::optional<double> estimate_to_truth_m;
   std::optional<double> truth_to_estimate_m;
   std::optional<double> chamfer_m;  // mean of the two
+  // The greater of the 95th percentiles of the two directions: the Hausdorff distance but for a
+  // twentieth of the walls.
   std::optional<double> hausdorff95_m;
+};
+
+// Of the distances from each of the estimate's walls that count to the truth's, and back.
+DistanceScore ScoreOfDistances(const std::vector<double>& estimate_to_truth_m,
+                               const std::vector<double>& truth_to_estimate_m);
+
+struct WallDistanceScore : DistanceScore {
   // Harmonic mean of the shares of wall cells within 5 and 10 cm of the other map's walls.
   std::optional<double> f1_5cm;
   std::optional<double> f1_10cm;
