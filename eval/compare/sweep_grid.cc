@@ -144,43 +144,72 @@ std::vector<std::vector<double>> OracleFigures(const SweepGrid& grid, const Orac
   return figures;
 }
 
-void FindBest(const SweepGrid& grid, const OraclePoints& oracles, std::size_t axis,
-              const std::vector<double>& metric, Better better, const BootstrapOptions& bootstrap,
-              GridLine& line) {
-  std::vector<SeedRows> by_point;
-  for (const std::size_t point : std::exchange(line.points, {})) {
-    SeedRows rows = RowsBySeed(grid, grid.points[point], metric);
-    // With a point whose runs all failed, the points would share no seed and there would be no best
-    // value.
-    (rows.empty() ? line.left_out : line.points).push_back(point);
-    if (!rows.empty()) by_point.push_back(std::move(rows));
-  }
-  if (line.points.size() < 2 || better == Better::kNeither) return;
-  const std::vector<std::string> seeds =
-      SharedSeeds(grid, grid.points[line.points.front()], by_point);
-  if (seeds.empty()) return;
-  std::vector<SettingRuns> settings;
-  for (std::size_t i = 0; i < line.points.size(); ++i) {
-    const GridPoint& point = grid.points[line.points[i]];
-    settings.push_back({grid.axes[axis].numbers[point.values[axis]], {}});
-    for (const std::string& seed : seeds) {
-      settings.back().by_seed.push_back(metric[by_point[i].at(seed)]);
+// The lines along one axis, judged by one score.
+class Lines {
+ public:
+  Lines(const SweepGrid& grid, std::size_t axis, const std::vector<double>& metric, Better better,
+        const BootstrapOptions& bootstrap)
+      : grid_(grid),
+        axis_(axis),
+        metric_(metric),
+        better_(better),
+        bootstrap_(bootstrap),
+        oracles_(grid) {}
+
+  // The line through these points, by ascending value of the axis.
+  GridLine Through(const std::vector<std::size_t>& points) const {
+    GridLine line;
+    std::vector<SeedRows> by_point;
+    for (const std::size_t point : points) {
+      SeedRows rows = RowsBySeed(grid_, grid_.points[point], metric_);
+      // With a point whose runs all failed, the points would share no seed and there would be no
+      // best value.
+      (rows.empty() ? line.left_out : line.points).push_back(point);
+      if (!rows.empty()) by_point.push_back(std::move(rows));
     }
+    if (line.points.size() < 2 || better_ == Better::kNeither) return line;
+    const std::vector<std::string> seeds =
+        SharedSeeds(grid_, grid_.points[line.points.front()], by_point);
+    if (seeds.empty()) return line;
+    std::vector<SettingRuns> settings = SettingsOf(line.points, by_point, seeds);
+    const auto oracle_runs = OracleFigures(grid_, oracles_, metric_, line.points, seeds);
+    line.to_oracle_runs = !oracle_runs.empty();
+    const std::vector<double> best_of_seed = BestOfEachSeed(settings, better_);
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      const std::vector<double>& oracle = line.to_oracle_runs ? oracle_runs[i] : best_of_seed;
+      line.mean_regret_of_seed.push_back(Mean(Regret(settings[i].by_seed, oracle, better_)));
+    }
+    const SeedUnits units = UnitsOf(seeds);
+    line.seeds = units.count();
+    if (units.count() < seeds.size()) {
+      for (SettingRuns& setting : settings) setting.by_seed = units.Figures(setting.by_seed);
+    }
+    line.best = FindBestSetting(settings, better_, Resamples(line.seeds, bootstrap_));
+    return line;
   }
-  const auto oracle_runs = OracleFigures(grid, oracles, metric, line.points, seeds);
-  line.to_oracle_runs = !oracle_runs.empty();
-  const std::vector<double> best_of_seed = BestOfEachSeed(settings, better);
-  for (std::size_t i = 0; i < settings.size(); ++i) {
-    const std::vector<double>& oracle = line.to_oracle_runs ? oracle_runs[i] : best_of_seed;
-    line.mean_regret_of_seed.push_back(Mean(Regret(settings[i].by_seed, oracle, better)));
+
+ private:
+  std::vector<SettingRuns> SettingsOf(const std::vector<std::size_t>& points,
+                                      const std::vector<SeedRows>& by_point,
+                                      const std::vector<std::string>& seeds) const {
+    std::vector<SettingRuns> settings;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const std::size_t value = grid_.points[points[i]].values[axis_];
+      settings.push_back({grid_.axes[axis_].numbers[value], {}});
+      for (const std::string& seed : seeds) {
+        settings.back().by_seed.push_back(metric_[by_point[i].at(seed)]);
+      }
+    }
+    return settings;
   }
-  const SeedUnits units = UnitsOf(seeds);
-  line.seeds = units.count();
-  if (units.count() < seeds.size()) {
-    for (SettingRuns& setting : settings) setting.by_seed = units.Figures(setting.by_seed);
-  }
-  line.best = FindBestSetting(settings, better, Resamples(line.seeds, bootstrap));
-}
+
+  const SweepGrid& grid_;
+  std::size_t axis_;
+  const std::vector<double>& metric_;
+  Better better_;
+  const BootstrapOptions& bootstrap_;
+  OraclePoints oracles_;
+};
 
 }  // namespace
 
@@ -227,23 +256,22 @@ SweepGrid GridOf(const SweepResults& results) {
 std::vector<GridLine> LinesAlong(const SweepGrid& grid, std::size_t axis,
                                  const std::vector<double>& metric, Better better,
                                  const BootstrapOptions& bootstrap) {
-  std::map<std::vector<std::size_t>, GridLine> line_of;
+  std::map<std::vector<std::size_t>, std::vector<std::size_t>> points_of;  // by the other axes
   for (std::size_t i = 0; i < grid.points.size(); ++i) {
     std::vector<std::size_t> held = grid.points[i].values;
     held[axis] = 0;
-    line_of[held].points.push_back(i);
+    points_of[held].push_back(i);
   }
-  const OraclePoints oracles(grid);
+  const Lines along(grid, axis, metric, better, bootstrap);
   std::vector<GridLine> lines;
-  for (auto& [held, line] : line_of) {
+  for (auto& [held, points] : points_of) {
     const auto value = [&](std::size_t point) { return grid.points[point].values[axis]; };
-    std::stable_sort(line.points.begin(), line.points.end(),
+    std::stable_sort(points.begin(), points.end(),
                      [&](std::size_t a, std::size_t b) { return value(a) < value(b); });
     std::set<std::size_t> distinct;
-    for (const std::size_t point : line.points) distinct.insert(value(point));
-    if (distinct.size() < 2 || distinct.size() != line.points.size()) continue;
-    FindBest(grid, oracles, axis, metric, better, bootstrap, line);
-    lines.push_back(std::move(line));
+    for (const std::size_t point : points) distinct.insert(value(point));
+    if (distinct.size() < 2 || distinct.size() != points.size()) continue;
+    lines.push_back(along.Through(points));
   }
   return lines;
 }
