@@ -174,8 +174,9 @@ bool IsLeftOut(const MetricComparison& compared, Comparison& comparison) {
 
 Comparison Compare(SweepResults a, SweepResults b, const CompareOptions& options) {
   AlignFixedSettings(options, a, b);
+  const RunPairs pairs = PairsOf(a, b, options);
   Comparison comparison;
-  const RunPairs pairs = PairsOf(a, b, options, comparison);
+  static_cast<Pairing&>(comparison) = pairs.pairing;
   const bool of_all = options.metrics == std::vector<std::string>{"all"};
   for (const std::string& name : MetricsToCompare(a, b, options.metrics)) {
     // If it was asked for by name, CompareMetric() throws.

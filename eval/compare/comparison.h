@@ -53,7 +53,8 @@ struct DifferentSetting {
   std::string b;
 };
 
-struct Comparison {
+// How the runs of the two sides were paired.
+struct Pairing {
   std::vector<std::string> paired_by;  // the axes whose values make a pair
   // Settings with a single value on each side, but not the same one.
   std::vector<DifferentSetting> different;
@@ -68,6 +69,9 @@ struct Comparison {
   int unpaired_b = 0;
   // Seeds not counted because they gave the same as another one in every score.
   int repeated_seeds = 0;
+};
+
+struct Comparison : Pairing {
   std::vector<MetricComparison> metrics;  // with at least one pair in which both are defined
   std::vector<std::string> undefined;     // scores undefined in every pair on one side or the other
   // With `--metric all`: not tested, because neither direction is better.

@@ -225,25 +225,25 @@ std::vector<Pair> JoinRows(const std::map<Key, std::size_t>& rows_a,
 
 }  // namespace
 
-RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options,
-                 Comparison& comparison) {
+RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options) {
+  RunPairs pairs;
+  Pairing& pairing = pairs.pairing;
   const std::vector<std::size_t> chosen_a = RowsThatMeet(a, options.where_a);
   const std::vector<std::size_t> chosen_b = RowsThatMeet(b, options.where_b);
-  comparison.paired_by = SharedAxes(a, b, options);
-  comparison.different = TakeDifferent(a, chosen_a, b, chosen_b, comparison.paired_by);
-  AddFixedDifferences(a, chosen_a, b, chosen_b, options, comparison.different);
-  const auto rows_a = RowsByKey(a, chosen_a, comparison.paired_by);
-  const auto rows_b = RowsByKey(b, chosen_b, comparison.paired_by);
-  const std::vector<std::size_t> seed_axes = SeedAxes(comparison.paired_by);
+  pairing.paired_by = SharedAxes(a, b, options);
+  pairing.different = TakeDifferent(a, chosen_a, b, chosen_b, pairing.paired_by);
+  AddFixedDifferences(a, chosen_a, b, chosen_b, options, pairing.different);
+  const auto rows_a = RowsByKey(a, chosen_a, pairing.paired_by);
+  const auto rows_b = RowsByKey(b, chosen_b, pairing.paired_by);
+  const std::vector<std::size_t> seed_axes = SeedAxes(pairing.paired_by);
   std::vector<Pair> found = JoinRows(rows_a, rows_b, seed_axes);
-  comparison.runs_a = static_cast<int>(rows_a.size());
-  comparison.runs_b = static_cast<int>(rows_b.size());
-  comparison.unpaired_a = static_cast<int>(rows_a.size() - found.size());
-  comparison.unpaired_b = static_cast<int>(rows_b.size() - found.size());
+  pairing.runs_a = static_cast<int>(rows_a.size());
+  pairing.runs_b = static_cast<int>(rows_b.size());
+  pairing.unpaired_a = static_cast<int>(rows_a.size() - found.size());
+  pairing.unpaired_b = static_cast<int>(rows_b.size() - found.size());
   const std::set<Key> repeated = RepeatedSeeds(a, b, found);
-  comparison.repeated_seeds = static_cast<int>(repeated.size());
+  pairing.repeated_seeds = static_cast<int>(repeated.size());
   std::erase_if(found, [&](const Pair& pair) { return repeated.contains(pair.seeds); });
-  RunPairs pairs;
   std::vector<Key> seeds;
   for (Pair& pair : found) {
     pairs.a.push_back(pair.a);
@@ -252,14 +252,14 @@ RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOpti
   }
   pairs.units = SeedUnits(seeds);
   for (const std::size_t axis : pairs.units.crossed()) {
-    comparison.crossed_seeds.push_back(comparison.paired_by[seed_axes[axis]]);
+    pairing.crossed_seeds.push_back(pairing.paired_by[seed_axes[axis]]);
   }
-  comparison.pairs = static_cast<int>(pairs.a.size());
-  comparison.units = static_cast<int>(pairs.units.count());
+  pairing.pairs = static_cast<int>(pairs.a.size());
+  pairing.units = static_cast<int>(pairs.units.count());
   if (pairs.a.empty()) {
     throw InputError(b.folder, fmt::format("shares no run with {} (by {}): choose what differs on "
                                            "purpose with --where-a KEY=VALUE and --where-b",
-                                           a.folder, fmt::join(comparison.paired_by, ", ")));
+                                           a.folder, fmt::join(pairing.paired_by, ", ")));
   }
   return pairs;
 }

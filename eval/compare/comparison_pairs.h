@@ -14,12 +14,11 @@ struct RunPairs {
   std::vector<std::size_t> a;
   std::vector<std::size_t> b;
   SeedUnits units{{}};
+  Pairing pairing;
 };
 
 // Pairs runs that meet the conditions and have equal values on all axes of both sides, without
-// seeds that only repeat another. Fills in the pairing and the counts of `comparison`. Throws
-// InputError as Compare() does.
-RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options,
-                 Comparison& comparison);
+// seeds that only repeat another. Throws InputError as Compare() does.
+RunPairs PairsOf(const SweepResults& a, const SweepResults& b, const CompareOptions& options);
 
 }  // namespace depthgrid
