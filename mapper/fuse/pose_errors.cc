@@ -195,9 +195,9 @@ void PoseErrors::Weigh(std::span<const MapPart> parts, const Pose2& map_from_bas
   }
 }
 
-// A match's error has three parts: the errors of the frames that drew the map there, that surface's
-// own noise, which persists while it is in view as the scan's lasting error does, and the scan's
-// noise, which is independent.
+// A match's error has four parts: the errors of the frames that drew the map there; that surface's
+// own noise and the scan's lasting error, which persist together while it is in view; and the
+// scan's noise, which is independent.
 PoseErrors::MatchError PoseErrors::See(const FilterStep& step, const Eigen::Matrix3d& information,
                                        std::span<const MapPart> parts,
                                        const LastingError& lasting) {

@@ -18,12 +18,13 @@ constexpr double kLongestMovedOnS = 0.6;
 }  // namespace
 
 bool HeldWatch::IsHeld(const Frame& frame) {
+  repeats_ = frame.slam_from_camera && pose_ == frame.slam_from_camera;
   if (!frame.slam_from_camera) return false;
   now_.Clear();
   if (frame.depth) now_.Take(*frame.depth);
   if (frame.scan) now_.Take(*frame.scan);
   now_s_ = frame.stamp_s;
-  if (pose_ != frame.slam_from_camera) {
+  if (!repeats_) {
     Begin(frame);
     return false;
   }
@@ -63,7 +64,7 @@ void HeldWatch::Begin(const Frame& frame) {
 
 std::optional<Pose3> HeldWatch::MovedOn() const {
   const std::size_t usual = UsualRunSoFar();
-  if (!step_ || held_ || run_ < 2 || usual < 2 || run_ > 2 * usual) return std::nullopt;
+  if (!step_ || held_ || !repeats_ || usual < 2 || run_ > 2 * usual) return std::nullopt;
   if (step_->duration_s > kLongestMovedOnS) return std::nullopt;
   const double moved_s = std::clamp(now_s_ - since_s_, 0.0, step_->duration_s);
   return *pose_ * Pose3{ExpRotation(moved_s * step_->turn_rate), moved_s * step_->velocity};

@@ -39,6 +39,7 @@ class HeldWatch {
   double now_s_ = 0.0;    // and of the last one
   int slam_epoch_ = 0;
   std::optional<SlamStep> step_;  // from the pose before to this, unless SLAM jumped
+  bool repeats_ = false;          // the last frame has this pose, and is not its first
   int first_frame_ = -1;
   std::size_t run_ = 0;  // frames with this pose
   bool held_ = false;

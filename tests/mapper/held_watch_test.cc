@@ -157,5 +157,22 @@ TEST(HeldWatch, MovesOnWhatRepeatsForAsLongAsAStepTook) {
   EXPECT_FALSE(moved_on[32]);  // longer than twice the usual time: it stands
 }
 
+TEST(HeldWatch, GivesNoPoseToAFrameWithoutOne) {
+  HeldWatch watch;
+  Frame frame;
+  for (int i = 0; i < 15; ++i) {
+    frame.index = i;
+    frame.stamp_s = 0.1 * i;
+    frame.slam_from_camera = CameraOf({0.1 * (i / 4), 0.0, 0.0}, 0.0);
+    watch.IsHeld(frame);
+  }
+  EXPECT_TRUE(watch.MovedOn());
+  frame.index = 15;
+  frame.stamp_s = 1.5;
+  frame.slam_from_camera.reset();  // SLAM is lost
+  watch.IsHeld(frame);
+  EXPECT_FALSE(watch.MovedOn());
+}
+
 }  // namespace
 }  // namespace depthgrid
