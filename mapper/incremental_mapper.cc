@@ -131,7 +131,7 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
   Prediction prediction = Predict(scans.matched, report);
   Match(scans.matched, prediction, report);
   prediction = AfterGap(scans, prediction, report);
-  prediction = AfterSlip(scans.matched, prediction, report);
+  prediction = AfterSlip(scans, prediction, report);
   LookForSlide(scans.matched, prediction, report);
   DoubtGuess(report);
   const FusedPose fused = Fuse(prediction, report);
@@ -241,7 +241,7 @@ void IncrementalMapper::State::DoubtGuess(const FrameReport& report) {
     }
   }
   if (report.beams == 0) return;  // without returns there is nothing to judge by
-  double share = report.match.found ? report.match.score : 0.0;
+  double share = ShareExplained(report);
   if (fixed_map && relocation.BeginsAgain()) {
     GiveGuessUp();
     share = 0.0;
@@ -341,7 +341,7 @@ void IncrementalMapper::State::Insert(const FrameScans& scans, const Prediction&
   history.newest().mapped = mapped.size();
   // Without matching (SLAM trusted alone) scans count as explained.
   std::optional<double> explained = 1.0;
-  if (reference) explained = report.match.found ? report.match.score : 0.0;
+  if (reference) explained = ShareExplained(report);
   // Frames that loops refer to are always kept.
   const bool ends_loops = report.loops_accepted + report.loops_rejected > 0;
   if (ends_loops) explained.reset();

@@ -20,10 +20,6 @@ constexpr double kWhollyUsual = 0.9;
 
 Eigen::Matrix3d AddedBy(double sigma_share) { return Squared(sigma_share * kEpochSigma); }
 
-double ShareExplained(const FrameReport& report) {
-  return report.match.found ? report.match.score : 0.0;
-}
-
 }  // namespace
 
 bool IncrementalMapper::State::SameEpoch() const {
@@ -130,9 +126,11 @@ std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<co
                     mapped.size(), *reference);
 }
 
-// Searches for a slip and, if there was one, begins an epoch at the corrected heading.
-Prediction IncrementalMapper::State::AfterSlip(const std::shared_ptr<const Scan>& scan,
+// Searches for a slip and, if there was one, begins an epoch at the corrected heading; else the
+// camera may have been carried elsewhere.
+Prediction IncrementalMapper::State::AfterSlip(const FrameScans& scans,
                                                const Prediction& prediction, FrameReport& report) {
+  const std::shared_ptr<const Scan>& scan = scans.matched;
   if (!reference || !scan || mapped.empty() || match_oracle) return prediction;
   Prediction mended = prediction;
   if (SearchesSlips() && slips.IsSuspected(history.newest(), ShareExplained(report), relocation)) {
@@ -144,6 +142,7 @@ Prediction IncrementalMapper::State::AfterSlip(const std::shared_ptr<const Scan>
     }
     Match(scan, mended, report);
   }
+  if (!report.slipped) mended = AfterCarrying(scans, mended, report);
   slips.Placed(history.newest(), scan, report.match);
   return mended;
 }

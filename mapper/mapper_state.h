@@ -51,6 +51,11 @@ struct IncrementalMapper::State {
   SlideSearch slides;
   Relocation relocation;
   SlipSearch slips;
+  struct OffMap {
+    int frames = 0;          // since the map explained a frame's scan
+    int contradictions = 0;  // the last times it was looked, in a row
+  };
+  OffMap off_map;  // in a fixed map
   AdjustmentRounds rounds;
   MappedFrames mapped;
   FrameMoves moves;                          // of earlier frames, by the newest frame
@@ -120,11 +125,18 @@ struct IncrementalMapper::State {
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);
-  Overlap SeenBeforeAt(const Pose2& map_from_base, const FrameScans& scans);
+  OverlapEachWay SeenBeforeAt(const Pose2& map_from_base, const FrameScans& scans);
   std::optional<double> GapWithinEpoch() const;
+  bool LooksForJumps(const FrameScans& scans) const;
+  bool Contradicts(const Overlap& told, double least_agreement) const;
+  double BeginAtJump(const FrameScans& scans, const Pose2& told);
   Prediction AfterGap(const FrameScans& scans, const Prediction& prediction, FrameReport& report);
-  Prediction AfterSlip(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
-                       FrameReport& report);
+  bool IsSuddenlyElsewhere(const FrameScans& scans, const Prediction& prediction, double share);
+  bool IsElsewhereInFixed(const FrameScans& scans, const Prediction& prediction, double share);
+  Prediction AfterCarrying(const FrameScans& scans, const Prediction& prediction,
+                           FrameReport& report);
+  Prediction MatchedAnew(const std::shared_ptr<const Scan>& scan, FrameReport& report);
+  Prediction AfterSlip(const FrameScans& scans, const Prediction& prediction, FrameReport& report);
   void LookForSlide(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
                     FrameReport& report);
   FusedPose Fuse(const Prediction& prediction, FrameReport& report);

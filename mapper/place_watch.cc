@@ -6,9 +6,6 @@
 namespace depthgrid {
 namespace {
 
-// Least share explained. Of 46 starts in two furnished rooms, frames at the right place had 0.36
-// and more of their scan on the map, those at a wrong place or in another room 0.05 and less.
-constexpr double kLeastExplained = 0.2;
 // Number of frames judged, and the share of them off the map that means lost.
 constexpr int kFrames = 30;
 constexpr double kLostShare = 0.9;
@@ -18,7 +15,7 @@ constexpr double kLostShare = 0.9;
 std::optional<bool> IsOffMap(const FrameReport& report) {
   if (!report.map_from_camera || report.beams == 0) return {};
   if (report.guessed) return true;
-  return !report.match.found || report.match.score < kLeastExplained;
+  return !report.match.found || report.match.score < kLeastOnMap;
 }
 
 void PlaceWatch::Add(const FrameReport& report) {

@@ -8,15 +8,21 @@
 
 namespace depthgrid {
 
-// Whether less than a fifth of the frame's scan lies on the map, or its place is a guess. Empty for
-// a frame without a pose or a return. Only meaningful with PriorMap::fixed: an extended map
+// Least share of a scan that the map explains at the right place. Of 46 starts in two furnished
+// rooms, frames at the right place had 0.36 and more of their scan on the map, those at a wrong
+// place or in another room 0.05 and less.
+constexpr double kLeastOnMap = 0.2;
+
+// Whether less than kLeastOnMap of the frame's scan lies on the map, or its place is a guess. Empty
+// for a frame without a pose or a return. Only meaningful with PriorMap::fixed: an extended map
 // contains these frames and explains them wherever they are.
 std::optional<bool> IsOffMap(const FrameReport& report);
 
 // Statistics over the last frames, since a single one may be off the map because a person stands
 // before the sensor. While lost, poses follow SLAM's motion alone; if the map explains the scans
-// again, SLAM has led back, or to a place that looks alike. To recover, use FindStart() or
-// FindStartNear() (mapper/map_start.h) and a new mapper.
+// again, SLAM has led back, or to a place that looks alike, or the mapper has found the place itself
+// (FrameReport::carried, relocated). If it does not, use FindStart() or FindStartNear()
+// (mapper/map_start.h) and a new mapper.
 class PlaceWatch {
  public:
   // Call once per frame, in order of time.

@@ -103,12 +103,17 @@ bool CanTellSlips(const FusionOptions& fusion) {
          *std::min_element(fusion.gain.begin(), fusion.gain.end()) >= kLeastFixedGain;
 }
 
+bool SlipSearch::FellSuddenly(const FrameRecord& frame, double share,
+                              const Relocation& usually) const {
+  return last_scan_ && last_epoch_ == frame.epoch &&
+         frame.stamp_s - last_stamp_s_ < kLongestSlipS && usually.IsUsual(last_share_) &&
+         share < kSlippedShare * last_share_;
+}
+
 bool SlipSearch::IsSuspected(const FrameRecord& frame, double share,
                              const Relocation& usually) const {
-  return slip_deg_ > 0.0 && last_scan_ && last_epoch_ == frame.epoch &&
-         frame.stamp_s - last_stamp_s_ < kLongestSlipS &&
-         usually.usual_share() >= kWhollyExplained && usually.IsUsual(last_share_) &&
-         last_explained_ >= kFewestSurfels && share < kSlippedShare * last_share_;
+  return slip_deg_ > 0.0 && usually.usual_share() >= kWhollyExplained &&
+         last_explained_ >= kFewestSurfels && FellSuddenly(frame, share, usually);
 }
 
 std::optional<MatchResult> SlipSearch::BestHeading(const std::shared_ptr<const Scan>& scan,

@@ -21,6 +21,10 @@ class SlipSearch {
   // Headings up to `slip_deg` from the prediction are tried; 0: none.
   explicit SlipSearch(double slip_deg) : slip_deg_(slip_deg) {}
 
+  // Whether the map, which explained the last scan as usual, suddenly explains less than half as
+  // much of this frame's: this `share`.
+  bool FellSuddenly(const FrameRecord& frame, double share, const Relocation& usually) const;
+
   // Whether a slip before this frame is likely, given the map's explained `share` of its scan.
   // `usually` gives the usual share.
   bool IsSuspected(const FrameRecord& frame, double share, const Relocation& usually) const;

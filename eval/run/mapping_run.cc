@@ -122,13 +122,21 @@ std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports) {
   };
   std::vector<std::string> lines;
   add(&FrameReport::slipped, "a sudden turn that the scans do not show was taken out", lines);
+  add(&FrameReport::carried,
+      "what is seen lies elsewhere, as where the camera was carried or the place was wrong,",
+      lines);
   add(&FrameReport::relocated, "what was seen since they were lost was moved to its place", lines);
   return lines;
 }
 
 std::vector<std::string> GuessWarnings(const std::vector<GuessedFrames>& guessed) {
   std::vector<std::string> lines;
+  constexpr std::size_t kMostGuesses = 4;
   for (const auto& [first, last] : guessed) {
+    if (lines.size() == kMostGuesses && guessed.size() > kMostGuesses + 1) {
+      lines.push_back(fmt::format("poses: and {} such parts more", guessed.size() - kMostGuesses));
+      break;
+    }
     const std::string where =
         last ? fmt::format(" and again after frame {}; where the map has what lies between", *last)
              : "; where the map goes on from there";

@@ -71,6 +71,9 @@ struct FrameReport {
   int loops_accepted = 0;            // loop events that entered the graph with this frame
   int loops_rejected = 0;
   bool slipped = false;  // SLAM's motion to here contradicted the scan and was corrected
+  // The scan contradicts the map so that the camera must have been carried elsewhere, as no pose
+  // tells: from this frame on the place is searched for as after a loss of SLAM.
+  bool carried = false;
   // The frames since a loss of SLAM were moved to where they belong; not where the guess was right.
   bool relocated = false;
   // After a loss of SLAM: the pose relative to the map from before it is only a guess, until the
@@ -91,5 +94,10 @@ struct FrameReport {
   std::optional<CameraStand> stand;  // of a depth image: tilt and height its scan was made with
   StageTimes times;
 };
+
+// The share of a frame's scan that the map explains.
+inline double ShareExplained(const FrameReport& report) {
+  return report.match.found ? report.match.score : 0.0;
+}
 
 }  // namespace depthgrid

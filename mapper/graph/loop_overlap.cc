@@ -104,8 +104,9 @@ class SeenSoFar {
   SeenPlace place_;
 };
 
-void Compare(const SeenPlace& place, const SeenPlace& other, const Pose2& place_from_other,
-             Overlap& overlap) {
+// The other place's points in what this one saw.
+Overlap Compared(const SeenPlace& place, const SeenPlace& other, const Pose2& place_from_other) {
+  Overlap overlap;
   for (const Eigen::Vector2d& point : other.points) {
     const Cell cell = CellOf(place_from_other * point, place.geometry.resolution_m);
     if (!place.geometry.Contains(cell)) continue;
@@ -113,6 +114,7 @@ void Compare(const SeenPlace& place, const SeenPlace& other, const Pose2& place_
     overlap.compared += finding == SeenPlace::kUnseen ? 0 : 1;
     overlap.agreeing += finding == SeenPlace::kWall ? 1 : 0;
   }
+  return overlap;
 }
 
 }  // namespace
@@ -170,11 +172,10 @@ SeenInHalves SeenInHalvesFrom(const std::vector<MappedFrame>& frames,
   return {all.Place(), even.Place(), odd.Place()};
 }
 
-Overlap OverlapOf(const SeenPlace& first, const SeenPlace& second, const Pose2& first_from_second) {
-  Overlap overlap;
-  Compare(first, second, first_from_second, overlap);
-  Compare(second, first, Inverse(first_from_second), overlap);
-  return overlap;
+OverlapEachWay EachWay(const SeenPlace& first, const SeenPlace& second,
+                       const Pose2& first_from_second) {
+  return {Compared(second, first, Inverse(first_from_second)),
+          Compared(first, second, first_from_second)};
 }
 
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const PlanarLoop& loop,

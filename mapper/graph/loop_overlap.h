@@ -35,6 +35,15 @@ struct Overlap {
   }
 };
 
+// The same, each way.
+struct OverlapEachWay {
+  Overlap of_first;   // points of the first place in what the second one saw
+  Overlap of_second;  // and the other way round
+  Overlap both() const {
+    return {of_first.compared + of_second.compared, of_first.agreeing + of_second.agreeing};
+  }
+};
+
 // What a place's scans saw, in base axes of its middle frame.
 struct SeenPlace {
   enum Finding : std::uint8_t { kUnseen, kFree, kWall };
@@ -49,7 +58,12 @@ std::vector<int> FramesOfPlace(const std::vector<MappedFrame>& frames, int middl
                                const OverlapOptions& options, int end);
 SeenPlace SeenFrom(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
                    int middle, const OverlapOptions& options);
-Overlap OverlapOf(const SeenPlace& first, const SeenPlace& second, const Pose2& first_from_second);
+OverlapEachWay EachWay(const SeenPlace& first, const SeenPlace& second,
+                       const Pose2& first_from_second);
+inline Overlap OverlapOf(const SeenPlace& first, const SeenPlace& second,
+                         const Pose2& first_from_second) {
+  return EachWay(first, second, first_from_second).both();
+}
 
 // SeenPlace of all members, of the even ones and of the odd ones.
 struct SeenInHalves {

@@ -58,17 +58,17 @@ std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std:
   return near;
 }
 
-Overlap OverlapOfNewest(const std::vector<MappedFrame>& frames, const OverlapOptions& options) {
+OverlapEachWay OverlapOfNewest(const std::vector<MappedFrame>& frames,
+                               const OverlapOptions& options) {
   const int newest = static_cast<int>(frames.size()) - 1;
   const Pose2& pose = PoseAt(frames, newest);
   const std::vector<int> old =
       EvenlySpread(OldFrames(frames, newest, pose, kSightM), kMostForNewest);
   if (old.empty()) return {};
-  PlanarLoop loop;
-  loop.first = old.back();
-  loop.second = newest;
-  loop.first_from_second = Between(PoseAt(frames, loop.first), pose);
-  return OverlapOf(frames, old, {newest}, loop, options);
+  const int middle = old.back();
+  return EachWay(SeenFrom(frames, old, middle, options),
+                 SeenFrom(frames, {newest}, newest, options),
+                 Between(PoseAt(frames, middle), pose));
 }
 
 }  // namespace depthgrid

@@ -27,7 +27,9 @@ inline std::vector<int> OldFrames(const std::vector<MappedFrame>& frames, int en
 std::vector<int> SeenFromNear(const std::vector<MappedFrame>& frames, const std::vector<int>& old,
                               const std::vector<int>& members, const Pose2& shift);
 
-// How the last frame agrees, at its pose, with what those before it saw from anywhere near.
-Overlap OverlapOfNewest(const std::vector<MappedFrame>& frames, const OverlapOptions& options);
+// How the last frame (the second place) agrees, at its pose, with what those before it (the first)
+// saw from anywhere near.
+OverlapEachWay OverlapOfNewest(const std::vector<MappedFrame>& frames,
+                               const OverlapOptions& options);
 
 }  // namespace depthgrid

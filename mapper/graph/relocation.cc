@@ -33,6 +33,13 @@ constexpr double kStepM = 0.5;
 constexpr double kStepRad = 0.5;
 constexpr double kTurnRadps = 2.0;
 
+// A camera that was carried may be as far away as after so long without a pose. Chosen: at 1 m/s
+// that is beyond max_window_m.
+constexpr double kCarriedS = 60.0;
+// What a map usually explains, at least, where it never explained anything: with min_share that is
+// what a right place does (kLeastOnMap).
+constexpr double kLeastUsual = 0.35;
+
 // Growth of the interval with each of the rarer searches that finds nothing, and its largest turn.
 // Chosen: 30 m of path are searched 30 times, each further 30 m ten times.
 constexpr double kRarer = 1.1;
@@ -97,6 +104,12 @@ void Relocation::Restarted(double duration_s) {
   unjudged_restart_ = true;
 }
 
+void Relocation::Carried() {
+  unjudged_s_ = std::max(unjudged_s_, kCarriedS);
+  unjudged_ = unjudged_carried_ = true;
+  usual_share_ = std::max(usual_share_, kLeastUsual);
+}
+
 void Relocation::Paused(double duration_s, const Pose2& step) {
   if (IsElsewhere(duration_s, step)) Lost(duration_s, step);
 }
@@ -111,14 +124,16 @@ bool Relocation::BeginIfDoubtful(double share, int next_frame) {
   const double lost_s = std::exchange(unjudged_s_, 0.0);
   const bool doubted = std::exchange(unjudged_, false);
   const bool restarted = std::exchange(unjudged_restart_, false);
+  const bool carried = std::exchange(unjudged_carried_, false);
   if (!(doubted || restarted) || !options_.use || next_frame == 0) return false;
-  // Lost again during the search: both losses form one new part.
-  if (active_ && (doubts() || !doubted)) {
+  // Lost again during the search: both losses form one new part. Not where the camera was carried,
+  // as its motion is not known then.
+  if (active_ && !carried && (doubts() || !doubted)) {
     lost_s_ += lost_s;
     return false;
   }
   // A loop reported with this frame already determines its place.
-  if (IsUsual(share) || IsJoinedAt(next_frame)) return false;
+  if ((IsUsual(share) && !carried) || IsJoinedAt(next_frame)) return false;
   const bool is_forgotten = unsettled() && first_frame_ == next_frame;  // the part before this loss
   if (unsettled() && !is_forgotten) left_.push_back({first_frame_, next_frame});
   // Then last_known_ is from before that part.

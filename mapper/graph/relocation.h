@@ -72,6 +72,9 @@ class Relocation {
   // Reports that SLAM began an epoch after frames without a pose, however few: unless the map
   // explains the first scan the place is searched for, but SLAM's word is believed meanwhile.
   void Restarted(double duration_s);
+  // Reports that the camera was carried elsewhere, nobody knows how far: the whole largest window
+  // is searched.
+  void Carried();
   // Reports a pause of the recording. SLAM's step over it is believed unless no robot makes it in
   // that time (speed_mps).
   void Paused(double duration_s, const Pose2& step);
@@ -88,10 +91,16 @@ class Relocation {
   bool active() const { return active_; }
   // Whether, besides, SLAM's word about it is not believed.
   bool doubts() const { return active_ && !believes_; }
+  // Whether the newest part lies where nobody believes it to be, so that what was seen before tells
+  // nothing about it.
+  bool IsApart() const { return unsettled() && !believes_; }
   // Whether the place after the last loss is still a guess, searched for often or rarely.
   bool unsettled() const { return active_ || rare_; }
-  // Whether the next scan decides about a loss during the rare searches: a part of its own begins.
-  bool BeginsAgain() const { return rare_ && (unjudged_ || unjudged_restart_); }
+  // Whether the next scan decides about a loss during the rare searches, or the camera was carried
+  // during any: a part of its own begins.
+  bool BeginsAgain() const {
+    return (rare_ && (unjudged_ || unjudged_restart_)) || (unsettled() && unjudged_carried_);
+  }
   int first_frame() const { return first_frame_; }
   // The parts of so many mapped frames that no search and no loop placed: the one after the last
   // loss, and earlier ones that were searched for until the next loss.
@@ -147,6 +156,7 @@ class Relocation {
   int explained_frames_ = 0;       // frames in that mean, at most kUsualFrames
   double unjudged_s_ = 0.0;        // the longest loss since the last scan
   bool unjudged_ = false;          // whether that loss makes the guess doubtful
+  bool unjudged_carried_ = false;  // whether the camera was carried, whatever the scan shows
   bool unjudged_restart_ = false;  // whether one since the last scan was followed by an epoch
   bool believes_ = false;          // whether SLAM's word after the loss is believed
   bool active_ = false;

@@ -1,89 +1,12 @@
 // SLAM that is lost in a finished map in which the camera is only localised.
 #include <gtest/gtest.h>
 
-#include <optional>
 #include <vector>
 
-#include "mapper/core/level.h"
-#include "mapper/incremental_mapper.h"
-#include "mapper/place_watch.h"
-#include "tests/mapper/mapped_frame.h"
-#include "tests/mapper/match_world.h"
+#include "tests/mapper/localised_run.h"
 
 namespace depthgrid {
 namespace {
-
-constexpr int kTourFrames = 240;
-constexpr PlanarLaser kTourLaser{.beams = 320, .sigma_of_range = 0.01};
-
-// Once round a furnished room.
-Pose2 TourAt(int i) {
-  const double turn_rad = 2.0 * kPi * i / kTourFrames;
-  return {3.0 + 0.7 * std::cos(turn_rad), 1.7 + 0.7 * std::sin(turn_rad),
-          WrapAngle(turn_rad + 0.5 * kPi)};
-}
-
-PriorMap TourMap() {
-  PriorMap prior;
-  for (int i = 0; i < kTourFrames; ++i) {
-    MappedFrame frame = MappedFrameAt(FurnishedRoom(), kTourLaser, TourAt(i), TourAt(i), i);
-    frame.frame -= kTourFrames;
-    prior.frames.push_back(frame);
-  }
-  prior.map_from_slam = Pose2{};
-  prior.fixed = true;
-  return prior;
-}
-
-// A localised run, frame by frame.
-struct LocalisedRun {
-  IncrementalMapper mapper{MapperOptions(), std::nullopt};
-  PlaceWatch watch;
-  std::vector<FrameReport> reports;
-  std::vector<Pose2> truths;
-
-  LocalisedRun() { mapper.StartFrom(TourMap()); }
-
-  // `count` frames at the true poses from `first` on, in SLAM's world moved by `off`.
-  void Drive(int first, int count, const Pose2& off, int epoch, const PlanarWorld& world) {
-    for (int i = 0; i < count; ++i) {
-      truths.push_back(TourAt(first + i));
-      Add(CameraOf(off * truths.back(), 1.0), epoch,
-          std::make_shared<const Scan>(ScanOf(world, truths.back(), kTourLaser, 4,
-                                              static_cast<std::uint32_t>(reports.size()))));
-    }
-  }
-  void Lose(int count) {
-    for (int i = 0; i < count; ++i) {
-      truths.push_back({});
-      Add({}, 0, {});
-    }
-  }
-  void Add(const std::optional<Pose3>& pose, int epoch, std::shared_ptr<const Scan> scan) {
-    Frame frame;
-    frame.index = static_cast<int>(reports.size());
-    frame.stamp_s = frame.index / 30.0;
-    frame.slam_epoch = epoch;
-    frame.slam_from_camera = pose;
-    frame.scan = std::move(scan);
-    reports.push_back(mapper.AddFrame(frame));
-    watch.Add(reports.back());
-  }
-  // The largest error of the result from this frame on.
-  double WorstErrorM(const MapperResult& result, std::size_t first) const {
-    double worst_m = 0.0;
-    for (std::size_t i = first; i < truths.size(); ++i) {
-      const Pose2 pose = BaseOf(*result.map_from_camera[i]);
-      worst_m = std::max(worst_m, (pose.translation() - truths[i].translation()).norm());
-    }
-    return worst_m;
-  }
-  int Relocations() const {
-    int count = 0;
-    for (const FrameReport& report : reports) count += report.relocated ? 1 : 0;
-    return count;
-  }
-};
 
 const Pose2 kTourRestart{1.6, -0.7, 0.9};
 
