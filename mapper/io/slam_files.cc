@@ -120,27 +120,43 @@ std::vector<SlamPose> LivePoses(const std::vector<FramedPose>& poses,
   return live;
 }
 
-// Finds SLAM's corrections in the poses unless loops.csv states the epochs.
-void FindCorrections(const SlamFilePaths& paths, bool epochs_known, const FramePart& part,
-                     SlamInput& input) {
-  if (epochs_known) return;
-  SlamOutput& slam = input.slam;
-  const Trajectory revised = paths.final.empty() ? Trajectory{} : slam.final;
-  const std::vector<int> jumps = FindJumps(slam.live, revised);
-  if (const auto doubt = DoubtOf(slam.live, jumps)) {
-    input.warnings.push_back(paths.live + ": " + *doubt);
+// Starts an epoch at each of SLAM's corrections that `live` shows.
+void StartCorrections(const SlamFilePaths& paths, const Trajectory& revised,
+                      std::vector<SlamPose>& live, std::vector<std::string>& warnings) {
+  const std::vector<int> jumps = FindJumps(live, revised);
+  if (const auto doubt = DoubtOf(live, jumps)) {
+    warnings.push_back(paths.live + ": " + *doubt);
     return;  // these are no corrections
   }
-  const auto count = std::count_if(jumps.begin(), jumps.end(), [&](int frame) {
+  StartEpochs(jumps, live);
+}
+
+// The frames with the first pose of an epoch that none of `before` has.
+std::vector<int> Corrected(const std::vector<SlamPose>& before, const std::vector<SlamPose>& live) {
+  std::vector<int> corrected;
+  int begun = 0;
+  for (std::size_t i = 0; i < live.size(); ++i) {
+    const int more = live[i].epoch - before[i].epoch;
+    if (!live[i].slam_from_camera || more <= begun) continue;
+    corrected.push_back(static_cast<int>(i));
+    begun = more;
+  }
+  return corrected;
+}
+
+// Tells SLAM's corrections, and takes loops from them if nothing else states any.
+void SayCorrections(const SlamFilePaths& paths, const std::vector<int>& frames,
+                    const FramePart& part, SlamInput& input) {
+  SlamOutput& slam = input.slam;
+  const auto count = std::count_if(frames.begin(), frames.end(), [&](int frame) {
     return part.Has(static_cast<std::size_t>(frame));
   });
   if (count > 0) {
     input.notes.push_back(fmt::format("SLAM corrected itself at {} (jumps of its live poses)",
                                       Counted(count, "frame")));
   }
-  StartEpochs(jumps, slam.live);
   if (!paths.loops.empty() || paths.final.empty()) return;
-  slam.loops = LoopsFromRevision(slam.live, revised, jumps);
+  slam.loops = LoopsFromRevision(slam.live, slam.final, frames);
   if (!slam.loops.empty()) {
     input.notes.push_back(
         fmt::format("{} read off the revised poses", Counted(slam.loops.size(), "loop closure")));
@@ -155,21 +171,35 @@ std::size_t PosedOf(const FramePart& part, const std::vector<SlamPose>& live) {
   return posed;
 }
 
-// Interpolates each frame's pose between the two nearest poses, which may be of no frame; epochs
-// are those of the frames.
-void Interpolate(const Trajectory& poses, const SlamReading& reading, std::vector<SlamPose>& live) {
+// The poses, which may be of no frame, with the epochs of the frames.
+std::vector<SlamPose> WithEpochs(const Trajectory& poses, const std::vector<SlamPose>& frames) {
   std::vector<SlamPose> all;
   std::size_t next = 0;
   int epoch = 0;
   for (const auto& [stamp_s, pose] : poses) {
-    for (; next < live.size() && live[next].stamp_s <= stamp_s; ++next) epoch = live[next].epoch;
+    for (; next < frames.size() && frames[next].stamp_s <= stamp_s; ++next) {
+      epoch = frames[next].epoch;
+    }
     all.push_back({stamp_s, pose, epoch});
   }
+  return all;
+}
+
+// Interpolates each frame's pose between the two nearest ones. Epochs never go down; a frame
+// without a pose keeps its own.
+std::vector<SlamPose> InterpolatedFrames(const std::vector<SlamPose>& poses,
+                                         const SlamReading& reading, std::vector<SlamPose> frames) {
   RecordingOptions options;
   options.interpolate_poses = true;
   options.max_interpolation_gap_s = reading.max_interpolation_gap_s;
-  const PoseTrack track(all, options);
-  for (SlamPose& frame : live) frame.slam_from_camera = track.At(frame.stamp_s).slam_from_camera;
+  const PoseTrack track(poses, options);
+  int epoch = 0;
+  for (SlamPose& frame : frames) {
+    const PoseTrack::Found found = track.At(frame.stamp_s);
+    epoch = std::max(epoch, found.slam_from_camera ? found.epoch : frame.epoch);
+    frame = {frame.stamp_s, found.slam_from_camera, epoch};
+  }
+  return frames;
 }
 
 // Reads a file of events and adds its loops, warnings and a note to `input`.
@@ -265,9 +295,21 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
               input.warnings);
   }
   const bool epochs_known = events.kind == kOwnEvents;
-  FindCorrections(paths, epochs_known, frames.part, input);
+  const Trajectory revised = paths.final.empty() ? Trajectory{} : slam.final;
+  const std::vector<SlamPose> before = slam.live;
+  if (reading.interpolate) {
+    // A correction is sought in the poses as they were given: spread over the frames between two of
+    // them it looks like motion.
+    std::vector<SlamPose> all = WithEpochs(live, slam.live);
+    if (!epochs_known) StartCorrections(paths, revised, all, input.warnings);
+    slam.live = InterpolatedFrames(all, reading, std::move(slam.live));
+  } else if (!epochs_known) {
+    StartCorrections(paths, revised, slam.live, input.warnings);
+  }
+  if (!epochs_known) {
+    SayCorrections(paths, Corrected(before, slam.live), frames.part, input);
+  }
   KeepLoopsOf(frames.part, input);
-  if (reading.interpolate) Interpolate(live, reading, slam.live);
   const std::size_t posed = PosedOf(frames.part, slam.live);
   require(posed > 0, paths.live, live);
   std::vector<bool> has_pose;
