@@ -10,10 +10,12 @@
 #include "mapper/core/angle.h"
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
+#include "mapper/io/damage.h"
 #include "mapper/io/depth_sequence.h"
 #include "mapper/io/find_up.h"
 #include "mapper/io/frame_folder.h"
 #include "mapper/io/icl_folder.h"
+#include "mapper/io/lost_markers.h"
 #include "mapper/io/slam_jumps.h"
 #include "mapper/io/tum_folder.h"
 
@@ -52,6 +54,10 @@ std::size_t JumpsOfPart(const std::vector<int>& jumps, const DepthSequence& sequ
 void FindCorrections(const std::string& path, const RecordingOptions& options,
                      DepthSequence& sequence, std::vector<std::string>& notes) {
   SlamOutput& slam = sequence.slam;
+  const std::vector<int> markers = FindLostMarkers(slam.live);
+  WarnOfCount(sequence.recording.warnings, path, static_cast<int>(markers.size()), "pose",
+              kLostMarkers);
+  Forget(markers, slam.live);
   const std::vector<int> jumps = FindJumps(slam.live, {});
   if (const auto doubt = DoubtOf(slam.live, jumps)) {
     sequence.recording.warnings.push_back(path + ": " + *doubt);

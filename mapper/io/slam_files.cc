@@ -11,6 +11,7 @@
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/loop_events.h"
+#include "mapper/io/lost_markers.h"
 #include "mapper/io/pose_file.h"
 #include "mapper/io/pose_track.h"
 #include "mapper/io/slam_jumps.h"
@@ -123,6 +124,9 @@ std::vector<SlamPose> LivePoses(const std::vector<FramedPose>& poses,
 // Starts an epoch at each of SLAM's corrections that `live` shows.
 void StartCorrections(const SlamFilePaths& paths, const Trajectory& revised,
                       std::vector<SlamPose>& live, std::vector<std::string>& warnings) {
+  const std::vector<int> markers = FindLostMarkers(live);
+  WarnOfCount(warnings, paths.live, static_cast<int>(markers.size()), "pose", kLostMarkers);
+  Forget(markers, live);
   const std::vector<int> jumps = FindJumps(live, revised);
   if (const auto doubt = DoubtOf(live, jumps)) {
     warnings.push_back(paths.live + ": " + *doubt);
