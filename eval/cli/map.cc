@@ -280,10 +280,19 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   std::optional<MapStart> begin;
   if (prior) begin = BeginAnew(*prior, request, warnings);
   ProgressBar bar("mapping");
-  MappingRun run = MapFrames(*input.source, settings.mapper,
-                             {.final_poses = input.final_poses,
-                              .progress = bar.AsProgress(kFinishingMap),
-                              .prior = prior ? &*prior : nullptr});
+  MappingRun run;
+  try {
+    run = MapFrames(*input.source, settings.mapper,
+                    {.final_poses = input.final_poses,
+                     .progress = bar.AsProgress(kFinishingMap),
+                     .prior = prior ? &*prior : nullptr});
+  } catch (const InputError&) {
+    // Poses in millimetres span too large a map; what was noticed before says why.
+    bar.Clear();
+    CheckPoses(arguments, input, warnings);
+    Warn(warnings);
+    throw;
+  }
   run.base_from_laser = settings.sequence.laser.mount.base_from_laser();
   bar.Say("writing the map and the report");
   const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);

@@ -41,5 +41,22 @@ TEST_F(ProgramDoubts, AnotherScaleOrMountIsNamedAsItIs) {
   EXPECT_THAT(refused.err, HasSubstr("source is profile, must be another one: of a recording no"));
 }
 
+// Poses in millimetres span too large a map: what was noticed of them before comes first.
+TEST_F(ProgramDoubts, AreToldWhereTheMapFails) {
+  Succeed("render ./small.yaml --no-colour -o seq");
+  Trajectory poses = ReadTrajectory(Path("seq/groundtruth.txt"));
+  double along_m = 0.0;
+  for (StampedPose& pose : poses) {
+    pose.world_from_camera.translation = {along_m, along_m, 1.2};
+    along_m += 2000.0;
+  }
+  WriteTrajectory(Path("poses.txt"), poses);
+  const Outcome outcome = Program("map seq --poses poses.txt -o out");
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, ContainsRegex("warning: poses.txt: the camera moves at [0-9]+ m/s: are "
+                                         "the poses in metres(.|\n)*\ndepthgrid: map: spans"));
+  EXPECT_FALSE(std::filesystem::exists(Path("out")));
+}
+
 }  // namespace
 }  // namespace depthgrid
