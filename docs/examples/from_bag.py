@@ -416,6 +416,8 @@ def opened(path):
         bag = rosbag.Bag(path)
     except OSError as error:
         raise BadInput(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:  # of what should be its first line
+        raise BadInput(f"{path}: is no ROS 1 bag; those of ROS 2 are folders, .db3 or .mcap") from error
     except rosbag.ROSBagException as error:
         raise BadInput(f"{path}: {error}") from error
     try:

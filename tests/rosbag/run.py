@@ -308,6 +308,9 @@ def main():
     with open(f"{FOLDER}/no.bag", "w", encoding="ascii") as file:
         file.write("no bag\n")
     require_refusal("no.bag: ", "no.bag", "--scan", "/scan", "-o", "refused")
+    with open(FOLDER + "/image.bag", "wb") as file:
+        file.write(b"\x89PNG\r\n\x1a\n")
+    require_refusal("image.bag: is no ROS 1 bag", "image.bag")
     require_refusal("missing.bag: cannot be read: No such file", "missing.bag")
     require_refusal("missing.mcap: cannot be read: No such file", "missing.mcap")
     require_refusal("no topic /scann; of that kind are: /scan", "plain.bag", "--scan", "/scann", "-o", "refused")
