@@ -298,7 +298,8 @@ void MapRequested(const MapArguments& given, MapRequest request) {
   const std::vector<std::string> doubts = DoubtsOfRun(given, request, input, begin, run);
   warnings.insert(warnings.end(), doubts.begin(), doubts.end());
   const auto crossing = CrossingOf(run.result);
-  if (const auto doubt = crossing ? DoubtOfCrossing(*crossing) : std::nullopt) {
+  if (const auto doubt =
+          crossing ? DoubtOfCrossing(*crossing, run.camera.has_value()) : std::nullopt) {
     warnings.push_back(arguments.input + ": " + *doubt);
   }
   if (arguments.localise) {

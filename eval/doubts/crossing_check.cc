@@ -65,13 +65,14 @@ std::optional<Crossing> CrossingOf(const MapperResult& result) {
   return crossing;
 }
 
-std::optional<std::string> DoubtOfCrossing(const Crossing& crossing) {
+std::optional<std::string> DoubtOfCrossing(const Crossing& crossing, bool has_camera) {
   if (crossing.share < kDoubledShare) return {};
   return fmt::format(
       "the map contradicts its own scans: {:.1f} % of the beams lead through its walls (most "
       "around frame {}), so walls are drawn twice or askew, as where poses, or the "
-      "camera's focal length or distortion, are wrong",
-      100.0 * crossing.share, *crossing.worst_frame);
+      "{}, are wrong",
+      100.0 * crossing.share, *crossing.worst_frame,
+      has_camera ? "camera's focal length or distortion" : "laser's angles, maximum or place");
 }
 
 std::optional<std::string> DoubtOfCrossing(const MapperResult& result) {

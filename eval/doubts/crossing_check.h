@@ -22,8 +22,9 @@ struct Crossing {
 // Empty for runs without such beams, as for those that only localised themselves.
 std::optional<Crossing> CrossingOf(const MapperResult& result);
 
-// A warning when so many beams disagree that the map must be wrong in parts.
-std::optional<std::string> DoubtOfCrossing(const Crossing& crossing);
+// A warning when so many beams disagree that the map must be wrong in parts; a laser's names its
+// own likely causes.
+std::optional<std::string> DoubtOfCrossing(const Crossing& crossing, bool has_camera = true);
 std::optional<std::string> DoubtOfCrossing(const MapperResult& result);
 
 }  // namespace depthgrid

@@ -77,6 +77,10 @@ TEST(CrossingCheck, AWallDrawnTwiceIsCrossedByTheScansOfTheFartherOne) {
   ASSERT_TRUE(doubt.has_value());
   EXPECT_NE(doubt->find("33.3 % of the beams"), std::string::npos) << *doubt;
   EXPECT_NE(doubt->find("around frame 11)"), std::string::npos) << *doubt;
+  EXPECT_NE(doubt->find("or the camera's focal length"), std::string::npos) << *doubt;
+  const auto of_laser = DoubtOfCrossing(*crossing, false);
+  ASSERT_TRUE(of_laser.has_value());
+  EXPECT_NE(of_laser->find("poses, or the laser's angles"), std::string::npos) << *of_laser;
   // Two cells are within the tolerance.
   EXPECT_EQ(ShareOf(ResultOf({ScanOfWall(kWallM)}, MapWithWalls({kWallM - 0.05, kWallM}))), 0.0);
 }
