@@ -98,6 +98,17 @@ std::string InterpolationRemedy(const FrameNames& names, const std::vector<doubl
          "max_interpolation_gap_s apart, for a camera that moves smoothly between them";
 }
 
+// How many of the part's images are in the time of the poses, if that is less than half: to
+// interpolate would not help the others.
+std::optional<std::size_t> FewAmongPoses(const FrameNames& names, double first_pose_s,
+                                         double last_pose_s) {
+  std::size_t among = 0;
+  for (std::size_t i = names.part.begin; i < names.part.EndAmong(names.stamps_s.size()); ++i) {
+    among += first_pose_s <= names.stamps_s[i] && names.stamps_s[i] <= last_pose_s ? 1 : 0;
+  }
+  return MostLackPoses(among, names.CountInPart()) ? std::optional(among) : std::nullopt;
+}
+
 std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_stamps_s) {
   if (const auto rate_hz = PosesASecond(names, pose_stamps_s)) {
     return fmt::format(
@@ -126,6 +137,11 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
         "--set sequence.recording.time_offset_s={:.3f} makes the first of both coincide", offset_s);
   }
   if (!overlap(PartBeginS(names), PartEndS(names))) return "none are of the part";
+  if (const auto covered = FewAmongPoses(names, first_pose_s, last_pose_s)) {
+    return fmt::format(
+        "{} between the first pose and the last",
+        *covered == 1 ? "only 1 image is" : fmt::format("only {} images are", *covered));
+  }
   return InterpolationRemedy(names, pose_stamps_s);
 }
 
