@@ -47,10 +47,13 @@ struct Step {
   SlamStep speeds;
 };
 
+// Nobody has so many images (a month of 30 a second): whole seconds since 1970.
+constexpr double kMostImages = 1e8;
+
 // Seconds per unit of the stamps: ICL-NUIM's are image numbers at 30 Hz.
 double StampUnitS(const std::vector<SlamPose>& live) {
   const auto is_number = [](const SlamPose& pose) {
-    return pose.stamp_s == std::floor(pose.stamp_s);
+    return pose.stamp_s == std::floor(pose.stamp_s) && pose.stamp_s < kMostImages;
   };
   return std::all_of(live.begin(), live.end(), is_number) ? 1.0 / 30.0 : 1.0;
 }

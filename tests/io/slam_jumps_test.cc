@@ -75,6 +75,9 @@ TEST(SlamJumps, OfWholeStampsAreDoubtedWithBothTheirMeanings) {
   EXPECT_THAT(*whole, testing::StartsWith("29 of 29 steps would be jumps if the stamps, all whole, "
                                           "count images at 30 Hz: are the poses in metres"));
   EXPECT_THAT(*whole, testing::HasSubstr("If they are seconds, nothing is amiss"));
+  std::vector<SlamPose> dated = live;
+  for (SlamPose& pose : dated) pose.stamp_s += 1305031100.0;  // seconds since 1970
+  EXPECT_THAT(FindJumps(dated, {}), IsEmpty());
   live.back().stamp_s += 0.25;  // they are seconds
   EXPECT_EQ(DoubtOf(live, FindJumps(live, {})), std::nullopt);
 }
