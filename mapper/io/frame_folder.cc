@@ -93,8 +93,13 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
                                           const fs::path& folder, FrameFolder& listed) {
   Recording& recording = listed.recording;
   if (const auto list = PoseListOf(folder); list && !PoseFileOf(images.front(), folder)) {
-    return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording),
-                       list->string(), recording.warnings);
+    try {
+      return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording),
+                         list->string(), recording.warnings);
+    } catch (const InputError& error) {
+      listed.poses_fault = error.what();
+      return std::vector<std::optional<Pose3>>(images.size());
+    }
   }
   std::vector<std::optional<Pose3>> poses;
   Tally damaged;
@@ -151,6 +156,7 @@ FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& o
 }
 
 SlamOutput OwnPoses(const FrameFolder& folder) {
+  if (!folder.poses_fault.empty()) throw InputError("", folder.poses_fault);
   const Tally& without = folder.without_pose;
   if (folder.poses.final.empty() && without.count > 0) {
     throw InputError(folder.recording.name,

@@ -18,6 +18,7 @@ struct FrameFolder {
   Recording recording;      // without a camera
   SlamOutput poses;         // the folder's own
   Tally without_pose;       // single-pose files that are damaged or have no pose
+  std::string poses_fault;  // of its list of poses, which counts if no others are given
   std::string camera_path;  // empty when the folder has none
 };
 
@@ -27,8 +28,8 @@ bool IsFrameFolder(const std::string& folder);
 // Throws InputError when there are no depth images.
 FrameFolder ListFrameFolder(const std::string& folder, const RecordingOptions& options = {});
 
-// The folder's own poses. Throws InputError when there are none, naming the first single-pose file
-// and its fault, if any.
+// The folder's own poses. Throws InputError when there are none, naming the fault of their list, or
+// the first single-pose file and its fault, if any.
 SlamOutput OwnPoses(const FrameFolder& folder);
 
 // The folder's camera, or that of `camera_path` when not empty, with image size and depth scale

@@ -128,6 +128,16 @@ TEST_F(FrameFolderTest, OneFileOfPoses) {
 }
 
 // An image that was taken away since leaves its pose behind.
+// A list that is no list of matrices, such as SLAM's trajectory, counts only where it is needed.
+TEST_F(FrameFolderTest, ItsOwnListIsNotNeededWhereOthersAreGiven) {
+  for (const int number : {0, 1}) WriteDepth(fmt::format("depth/{}.png", number), 1000);
+  Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
+  Write("traj.txt", "0 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(OpenError(), HasSubstr("~/traj.txt:1: has 8 columns, must be a row of a matrix"));
+  const SlamOutput slam = SlamOutputOf({{0.0, Pose3{}}, {1.0 / 30.0, Pose3{}}});
+  EXPECT_EQ(All(*Open(slam)).size(), 2U);
+}
+
 TEST_F(FrameFolderTest, PosesOfOneFilePairByNumberWhenImagesAreMissing) {
   for (const int number : {0, 2}) {
     WriteDepth(fmt::format("frame-{:06}.depth.png", number), 1000);
