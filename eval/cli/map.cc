@@ -163,10 +163,16 @@ void CheckFloor(const MapArguments& arguments, const Sequence& sequence, const S
 }
 
 // Warns of poses that were not checked by matches, because their map looks like any other.
-void CheckMatches(const MapArguments& arguments, const MapSettings& settings, const MappingRun& run,
+void CheckMatches(const MapArguments& arguments, const MapSettings& settings,
+                  const std::optional<double>& depth_scale_per_m, const MappingRun& run,
                   std::vector<std::string>& warnings) {
   if (const auto doubt = DoubtOfView(run, settings.mapper)) {
-    warnings.push_back(arguments.input + ": " + *doubt);
+    // Its last words are the range of depths, if any were measured.
+    const bool may_be_scale = depth_scale_per_m && doubt->ends_with(" m");
+    warnings.push_back(arguments.input + ": " + *doubt +
+                       (may_be_scale ? fmt::format(", read with {:g} units a metre (depth_scale)",
+                                                   *depth_scale_per_m)
+                                     : ""));
     return;
   }
   if (!run.camera && SawNothing(run)) {
@@ -240,7 +246,7 @@ std::vector<std::string> DoubtsOfRun(const MapArguments& given, const MapRequest
   // Misread poses differ in scale as well.
   if (!input.pose_doubt) CheckScale(arguments.input, input.depth_scale_per_m, run, warnings);
   CheckDirections(arguments.input, settings.sequence.laser, run, warnings);
-  CheckMatches(arguments, settings, run, warnings);
+  CheckMatches(arguments, settings, input.depth_scale_per_m, run, warnings);
   if (!begin) return warnings;
   const auto doubt = DoubtOfPrior(arguments.map, settings.mapper, run.camera.has_value());
   if (doubt) warnings.push_back(*doubt);

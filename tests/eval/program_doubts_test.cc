@@ -58,5 +58,14 @@ TEST_F(ProgramDoubts, AreToldWhereTheMapFails) {
   EXPECT_FALSE(std::filesystem::exists(Path("out")));
 }
 
+// Where nothing of the room is in reach, the scale that the images were read with may be why.
+TEST_F(ProgramDoubts, NameTheScaleOfImagesThatShowTooMuch) {
+  Succeed("render ./small.yaml --no-colour -o seq");
+  const Outcome outcome = Program("map seq --up z -o out --set sequence.recording.depth_scale=250");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, ContainsRegex("show depth from [0-9.]+ to [0-9.]+ m, read with 250 "
+                                         "units a metre \\(depth_scale\\)\n"));
+}
+
 }  // namespace
 }  // namespace depthgrid
