@@ -129,6 +129,8 @@ void IncrementalMapper::State::MapScans(const Frame& frame, const FrameScans& sc
   CloseLoops(frame, scans, report);
   if (!frame.slam_from_camera) return;  // SLAM is lost: no estimate
   Prediction prediction = Predict(scans.matched, report);
+  // A depth camera's noise is taken for people (docs/tried.md, "What moves").
+  if (scans.stand) prediction.motion_covariance.reset();
   Match(scans.matched, prediction, report);
   prediction = AfterGap(scans, prediction, report);
   prediction = AfterSlip(scans, prediction, report);

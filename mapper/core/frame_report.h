@@ -14,6 +14,9 @@ namespace depthgrid {
 struct Prediction {
   Pose2 map_from_base;
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  // base axes: forward m, left m, yaw rad
+  // Of SLAM's motion from the frame before alone; empty where that is not learnt, after a pause and
+  // where the pose was placed anew.
+  std::optional<Eigen::Matrix3d> motion_covariance = {};
 };
 
 // Scales of small motions (forward m, left m, yaw rad): 1/3 rad moves points 3 m away by 1 m.
@@ -30,6 +33,9 @@ struct MatchResult {
   double score = 0.0;  // share of the beams that the map explains, 0..1
   int explained = 0;   // as a number of surface pieces; 0 where not counted
   int iterations = 0;
+  // Pieces of something that moves were left out one by one (SurfelMatcher). Some of it may have
+  // stayed in, so such a match errs by more than it claims, and SLAM's noise is not learnt from it.
+  bool left_out_misfits = false;
 };
 
 // CPU time of a frame, divided among its stages in proportion to their wall time; microseconds.

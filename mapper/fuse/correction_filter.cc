@@ -20,7 +20,12 @@ Pose2 CorrectionFilter::PredictedPose(const Pose2& slam_from_base) const {
 }
 
 Prediction CorrectionFilter::Predict(const Pose2& slam_from_base, double stamp_s) const {
-  if (Learns()) return tracker_.Predict(slam_from_base);
+  if (Learns()) {
+    Prediction prediction = tracker_.Predict(slam_from_base);
+    // Placed anew for this very frame: no motion leads there.
+    if (last_ && last_->stamp_s >= stamp_s) prediction.motion_covariance.reset();
+    return prediction;
+  }
   Prediction prediction{PredictedPose(slam_from_base), covariance_};
   if (!last_) return prediction;
   const Pose2 motion = Between(last_->slam_from_base, slam_from_base);

@@ -21,13 +21,17 @@ DriftState Predicted(const DriftState& state, const Pose2& motion, int frames,
   next.covariance = f * state.covariance * f.transpose();
   next.with_previous = state.covariance.topRows<3>() * f.topRows<3>().transpose();
   next.covariance.topLeftCorner<3, 3>() += Squared(errors.walk);
+  const auto bias_added = errors.bias_added.asDiagonal();
+  next.of_motion = bias_added * state.covariance.bottomRightCorner<3, 3>() * bias_added;
+  next.of_motion += Squared(errors.walk);
   next.covariance.bottomRightCorner<3, 3>() += Squared(errors.bias_renewed);
   return next;
 }
 
 Prediction PredictionOf(const DriftState& predicted, const MotionNoise& noise) {
   return {predicted.map_from_base,
-          predicted.covariance.topLeftCorner<3, 3>() + Squared(noise.jitter)};
+          predicted.covariance.topLeftCorner<3, 3>() + Squared(noise.jitter),
+          predicted.of_motion + 2.0 * Squared(noise.jitter)};
 }
 
 DriftUpdate Updated(const DriftState& predicted, const MatchResult& match,

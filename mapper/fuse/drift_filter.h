@@ -17,6 +17,8 @@ struct DriftState {
   Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();
   // Where predicted: covariance of the pose before the motion with this one, each in its base axes.
   Eigen::Matrix3d with_previous = Eigen::Matrix3d::Zero();
+  // Covariance of the motion alone.
+  Eigen::Matrix3d of_motion = Eigen::Matrix3d::Zero();
 };
 
 // The state after SLAM moved by `motion` during `frames` frames.

@@ -67,7 +67,9 @@ DriftState DriftTracker::StateAt(const Pose2& slam_from_base) const {
 
 Prediction DriftTracker::Predict(const Pose2& slam_from_base) const {
   if (!last_) return {slam_from_base, Eigen::Matrix3d::Zero()};
-  return PredictionOf(StateAt(slam_from_base), noise_);
+  Prediction prediction = PredictionOf(StateAt(slam_from_base), noise_);
+  if (frames_ > kMostLearntFrames) prediction.motion_covariance.reset();
+  return prediction;
 }
 
 FusedPose DriftTracker::Fuse(const Pose2& slam_from_base, const MatchResult& match) const {
@@ -126,8 +128,8 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
         step_.previous = state_.map_from_base;
         step_.previous_gain = update.previous_gain;
         step_.new_bias.reset();
-        matched = match;
-        if (spread_) TestBound(PredictionOf(predicted, noise_), match);
+        if (!match.left_out_misfits) matched = match;
+        if (spread_ && matched) TestBound(PredictionOf(predicted, noise_), match);
       }
     } else if (PredictionOf(predicted, noise_).map_from_base == map_from_base) {
       next = predicted;

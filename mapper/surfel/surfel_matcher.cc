@@ -28,18 +28,33 @@ constexpr double kYoungFrames = 10.0;
 // Not applied to a run's first frames: all surfels are young, SLAM's noise is unknown, and before a
 // single wall SLAM alone would decide what moves along it (docs/tried.md, "What moves").
 constexpr double kFirstFrames = 60.0;
-// Young surfels move if their mean chi-square exceeds this at the pose found without them.
+// Young surfels move if their mean chi-square exceeds this at the pose found without them; single
+// ones if that much each is saved by leaving them free.
 constexpr double kMovingChi2 = 6.0;
+// Fewer misfits may be chance; so may those that most of what is near them contradicts: where
+// nobody walks these two are met in 2 frames of 1,000 (docs/tried.md, "What moves").
+constexpr int kMinMisfits = 2;
+constexpr double kLeastShareOfMisfits = 0.2;
+// Nor is anybody most of what is seen. In a run's first frames SLAM may err by more than is assumed
+// of it: most of a wall ahead is misfits then (docs/tried.md, "What moves").
+constexpr double kMostAreMisfits = 1.0 / 2.0;
+constexpr double kMostAreMisfitsAtFirst = 1.0 / 3.0;
 // Least share of the information (prediction included) that must remain in every direction without
 // young surfels.
 constexpr double kLeastShareWithoutYoung = 0.1;
 constexpr int kStepsWithoutYoung = 4;
+// Only to look for misfits.
+constexpr int kStepsByOld = 2;
 // Added to the prediction's variances (0.01 mm, 0.01 mrad) so that the inverse exists.
 constexpr double kLeastVariance = 1e-10;
 // Limit on the last, linearised step: larger ones only occur in directions that the match hardly
 // constrains.
 constexpr double kFarthestM = 0.1;
 constexpr double kFarthestRad = 0.05;
+
+Eigen::Matrix3d InformationOf(const Eigen::Matrix3d& covariance) {
+  return (covariance + kLeastVariance * Eigen::Matrix3d::Identity()).inverse();
+}
 
 // h^-1 g over the directions in which h has information.
 Eigen::Vector3d SeenStep(const NormalEquations& equations) {
@@ -146,6 +161,18 @@ SurfelMatcher::Solution SurfelMatcher::Solve(const SurfelStore& map, const Prior
   return solution;
 }
 
+void SurfelMatcher::StepPaired(int step, const Prior& prior, Solution& solution) {
+  solution.evaluation = pairs_.Evaluate(Gates(), solution.map_from_base);
+  if (step >= kStepsBeforeJudging) solution.evaluation = Judged(solution.evaluation);
+  Step(prior, solution);
+}
+
+SurfelMatcher::Solution SurfelMatcher::SolvePaired(int steps, const Prior& prior, Solution from) {
+  from.map_from_base = prior.map_from_base;
+  for (int i = 0; i < steps; ++i) StepPaired(i, prior, from);
+  return from;
+}
+
 // With the current associations. Empty where too little information remains.
 std::optional<SurfelMatcher::Solution> SurfelMatcher::SolveWithoutYoung(double frame,
                                                                         const Prior& prior,
@@ -154,9 +181,7 @@ std::optional<SurfelMatcher::Solution> SurfelMatcher::SolveWithoutYoung(double f
   Solution solution = with_all;
   solution.map_from_base = prior.map_from_base;
   for (int i = 0; i < kStepsWithoutYoung; ++i) {
-    solution.evaluation = pairs_.Evaluate(Gates(), solution.map_from_base);
-    if (i >= kStepsBeforeJudging) solution.evaluation = Judged(solution.evaluation);
-    Step(prior, solution);
+    StepPaired(i, prior, solution);
     if (i > 0) continue;
     const SymmetricEigen share = GeneralizedEigenOf(solution.seen.h + prior.information,
                                                     with_all.seen.h + prior.information);
@@ -177,19 +202,59 @@ void SurfelMatcher::LeaveOutMoving(double frame, const Prior& prior, Solution& s
   solution = *without;
 }
 
+// Who walks along with the robot is lost in the mean of the walls that come into view, and young
+// pairs are often most of what tells the way. So single young pairs are judged, by SLAM's newest
+// motion: does one motion of all that is young explain them?
+bool SurfelMatcher::LeaveOutMisfits(double frame, const Prior& recent, const Prior& prior,
+                                    Solution& solution) {
+  const double most =
+      frame + kYoungFrames < kFirstFrames ? kMostAreMisfitsAtFirst : kMostAreMisfits;
+  // Spares most frames the rest: the pose by what is old lies between these two.
+  if (pairs_.MisfitsAt(frame, recent.map_from_base).empty() &&
+      pairs_.MisfitsAt(frame, solution.map_from_base).empty()) {
+    return false;
+  }
+  pairs_.LeaveOutYoung(frame);
+  const Pose2 by_old = SolvePaired(kStepsByOld, recent, solution).map_from_base;
+  pairs_.TakeInAll();
+  const std::vector<std::size_t> misfits = pairs_.MisfitsAt(frame, by_old);
+  const auto count = static_cast<int>(misfits.size());
+  if (count < kMinMisfits || count > most * solution.evaluation.used) return false;
+  const std::vector<std::size_t> moving = pairs_.YoungNear(frame, misfits);
+  if (count < kLeastShareOfMisfits * static_cast<double>(moving.size())) return false;
+  const auto least_cost = [&] {
+    const Pose2 found = SolvePaired(kStepsWithoutYoung, recent, solution).map_from_base;
+    const Eigen::Vector3d back = Between(found, recent.map_from_base).vector();
+    return pairs_.Chi2At(found) + back.dot(recent.information * back);
+  };
+  const double all_move_as_one = least_cost();
+  pairs_.LeaveOut(misfits);
+  const double misfits_are_free = least_cost();
+  if (all_move_as_one - misfits_are_free <= kMovingChi2 * count) {
+    pairs_.TakeInAll();
+    return false;
+  }
+  pairs_.LeaveOut(moving);
+  solution = SolvePaired(kStepsWithoutYoung, prior, solution);
+  return true;
+}
+
 MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const SurfelStore& map,
                                  const Prediction& prediction, std::vector<MapPart>* parts) {
-  const Prior prior{
-      prediction.map_from_base,
-      (prediction.covariance + kLeastVariance * Eigen::Matrix3d::Identity()).inverse()};
+  const Prior prior{prediction.map_from_base, InformationOf(prediction.covariance)};
   pairs_.Assign(pieces, options_.judge_sharing ? correlation_ : 0.0);
   Solution solution = Solve(map, prior);
   MatchResult match;
   match.map_from_base = prediction.map_from_base;
   match.iterations = solution.iterations;
   if (!solution.found) return match;
-  if (options_.judge_moving && map.newest_frame() >= kFirstFrames) {
-    LeaveOutMoving(map.newest_frame() - kYoungFrames, prior, solution);
+  const double frame = map.newest_frame() - kYoungFrames;
+  if (options_.judge_moving && prediction.motion_covariance) {
+    const Prior recent{prediction.map_from_base, InformationOf(*prediction.motion_covariance)};
+    match.left_out_misfits = LeaveOutMisfits(frame, recent, prior, solution);
+  }
+  if (options_.judge_moving && !match.left_out_misfits && map.newest_frame() >= kFirstFrames) {
+    LeaveOutMoving(frame, prior, solution);
   }
   if (parts != nullptr) pairs_.PartsOf(Gates(), solution.map_from_base, *parts);
   match.found = true;

@@ -65,6 +65,10 @@ class SurfelMatcher {
   // One step towards the maximum a posteriori, which it returns.
   Eigen::Vector3d Step(const Prior& prior, Solution& solution) const;
   Solution Solve(const SurfelStore& map, const Prior& prior);
+  // The same for a number of steps with the current associations.
+  Solution SolvePaired(int steps, const Prior& prior, Solution from);
+  void StepPaired(int step, const Prior& prior, Solution& solution);
+  bool LeaveOutMisfits(double frame, const Prior& recent, const Prior& prior, Solution& solution);
   std::optional<Solution> SolveWithoutYoung(double frame, const Prior& prior,
                                             const Solution& with_all);
   void LeaveOutMoving(double frame, const Prior& prior, Solution& solution);

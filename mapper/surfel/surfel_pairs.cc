@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include "mapper/surfel/misfit.h"
@@ -24,6 +25,12 @@ constexpr double kExplainedSigmas = 3.0;
 constexpr double kNever = -1.0;
 // Five standard deviations: limits the effect of outliers.
 constexpr double kMostChi2 = 25.0;
+
+// Two misfits this near to each other may be of one person, who is twice as wide. By chance misfits
+// lie anywhere (docs/tried.md, "What moves").
+constexpr double kMisfitsApartM = 0.2;
+// All that belongs to somebody lies this near to a misfit.
+constexpr double kPersonM = 0.4;
 
 double SumOf(Doubles lanes) { return hn::GetLane(hn::SumOfLanes(kDoubles, lanes)); }
 
@@ -146,6 +153,66 @@ SurfelPairs::YoungPairs SurfelPairs::YoungAt(double frame, const Pose2& map_from
   }
   if (young.count > 0) young.chi2 /= young.count;
   return young;
+}
+
+bool SurfelPairs::IsYoung(std::size_t piece, double frame) const {
+  const Block& block = blocks_[piece / kLanes];
+  const std::size_t lane = piece % kLanes;
+  return block.information[lane] > 0.0 && block.mapped[lane] > frame;
+}
+
+// Of the others: a piece is not near to itself.
+bool SurfelPairs::IsNearOneOf(const std::vector<std::size_t>& pieces, std::size_t piece,
+                              double within_m) const {
+  const Eigen::Vector2d& at_m = (*pieces_)[piece].point_m;
+  return std::any_of(pieces.begin(), pieces.end(), [&](std::size_t other) {
+    return other != piece && ((*pieces_)[other].point_m - at_m).squaredNorm() < within_m * within_m;
+  });
+}
+
+std::vector<std::size_t> SurfelPairs::MisfitsAt(double frame, const Pose2& map_from_base) const {
+  const Motion2 motion(map_from_base);
+  std::vector<std::size_t> off;
+  for (std::size_t i = 0; i < pieces_->size(); ++i) {
+    if (IsYoung(i, frame) &&
+        std::abs(SigmasOff(blocks_[i / kLanes], i % kLanes, motion)) > kExplainedSigmas) {
+      off.push_back(i);
+    }
+  }
+  std::vector<std::size_t> misfits;
+  std::copy_if(off.begin(), off.end(), std::back_inserter(misfits),
+               [&](std::size_t i) { return IsNearOneOf(off, i, kMisfitsApartM); });
+  return misfits;
+}
+
+std::vector<std::size_t> SurfelPairs::YoungNear(double frame,
+                                                const std::vector<std::size_t>& pieces) const {
+  std::vector<std::size_t> near;
+  for (std::size_t i = 0; i < pieces_->size(); ++i) {
+    if (IsYoung(i, frame) && IsNearOneOf(pieces, i, kPersonM)) near.push_back(i);
+  }
+  return near;
+}
+
+double SurfelPairs::Chi2At(const Pose2& map_from_base) const {
+  const Motion2 motion(map_from_base);
+  double chi2 = 0.0;
+  for (const Block& block : blocks_) {
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      if (block.information[lane] <= 0.0) continue;
+      const double sigmas = SigmasOff(block, lane, motion);
+      chi2 += std::min(sigmas * sigmas, kMostChi2) / block.counted_over[lane];
+    }
+  }
+  return chi2;
+}
+
+void SurfelPairs::LeaveOut(const std::vector<std::size_t>& pieces) {
+  for (const std::size_t piece : pieces) {
+    Block& block = blocks_[piece / kLanes];
+    const std::size_t lane = piece % kLanes;
+    block.left_out[lane] += std::exchange(block.information[lane], 0.0);
+  }
 }
 
 void SurfelPairs::LeaveOutYoung(double frame) {

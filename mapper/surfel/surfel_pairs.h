@@ -42,9 +42,19 @@ class SurfelPairs {
     double chi2 = 0.0;  // mean, each limited to 25
   };
   YoungPairs YoungAt(double frame, const Pose2& map_from_base) const;
+  // The pieces of the young pairs that are more than three sigmas off at a pose, less those that no
+  // other of them lies near to.
+  std::vector<std::size_t> MisfitsAt(double frame, const Pose2& map_from_base) const;
+  // The pieces of the young pairs within reach of a person from any of these.
+  std::vector<std::size_t> YoungNear(double frame, const std::vector<std::size_t>& pieces) const;
+  // Sum of the squared residuals in sigmas, each limited to 25 and divided by what companions
+  // share.
+  double Chi2At(const Pose2& map_from_base) const;
   // Removes the young pairs from evaluations until the next association, or TakeInAll() restores
   // them.
   void LeaveOutYoung(double frame);
+  // The same with the pairs of these pieces.
+  void LeaveOut(const std::vector<std::size_t>& pieces);
   void TakeInAll();
   // The contribution of each matched surfel at this pose.
   void PartsOf(const PairGates& gates, const Pose2& map_from_base,
@@ -69,6 +79,9 @@ class SurfelPairs {
   };
   // The distance of a piece from its surfel along the normal, in standard deviations.
   static double SigmasOff(const Block& block, std::size_t lane, const Motion2& motion);
+  bool IsYoung(std::size_t piece, double frame) const;
+  bool IsNearOneOf(const std::vector<std::size_t>& pieces, std::size_t piece,
+                   double within_m) const;
   void AssociateOne(const SurfelStore& map, const PairGates& gates, const Motion2& motion,
                     std::size_t piece);
 

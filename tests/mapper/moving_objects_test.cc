@@ -344,6 +344,8 @@ TEST(MovingObjects, TheMapIsNotCarriedAlong) {
   const auto error_m = [](double moving_m) {
     MapperOptions options;
     options.surfel.moving_m = moving_m;
+    // Which alone keeps most of it (MovingMisfits).
+    options.surfel.match.judge_moving = moving_m > 0.0;
     return ErrorBehindSomebodyM(options, {1.5, 0.0}, {.sigma_of_range = 0.01});
   };
   EXPECT_GT(error_m(0.0), 0.5);
