@@ -129,7 +129,7 @@ void DriftTracker::Commit(const Pose2& slam_from_base, const Pose2& map_from_bas
         step_.previous_gain = update.previous_gain;
         step_.new_bias.reset();
         if (!match.left_out_misfits) matched = match;
-        if (spread_ && matched) TestBound(PredictionOf(predicted, noise_), match);
+        if (spread_) TestBound(PredictionOf(predicted, noise_), match);
       }
     } else if (PredictionOf(predicted, noise_).map_from_base == map_from_base) {
       next = predicted;

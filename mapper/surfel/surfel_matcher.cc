@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mapper/core/symmetric_eigen.h"
+#include "mapper/fuse/fusion.h"
 
 namespace depthgrid {
 namespace {
@@ -45,6 +46,9 @@ constexpr double kLeastShareWithoutYoung = 0.1;
 constexpr int kStepsWithoutYoung = 4;
 // Only to look for misfits.
 constexpr int kStepsByOld = 2;
+// By so much a frame SLAM may err although it was perfect so far: else, where it begins to drift,
+// walls are misfits, and that it drifts is not learnt (docs/tried.md, "What moves"). m, m, rad.
+const Eigen::Vector3d kLeastMotionSigma(0.006, 0.006, 0.006);
 // Added to the prediction's variances (0.01 mm, 0.01 mrad) so that the inverse exists.
 constexpr double kLeastVariance = 1e-10;
 // Limit on the last, linearised step: larger ones only occur in directions that the match hardly
@@ -217,10 +221,10 @@ bool SurfelMatcher::LeaveOutMisfits(double frame, const Prior& recent, const Pri
   pairs_.LeaveOutYoung(frame);
   const Pose2 by_old = SolvePaired(kStepsByOld, recent, solution).map_from_base;
   pairs_.TakeInAll();
-  const std::vector<std::size_t> misfits = pairs_.MisfitsAt(frame, by_old);
+  const std::vector<std::size_t>& misfits = pairs_.MisfitsAt(frame, by_old);
   const auto count = static_cast<int>(misfits.size());
   if (count < kMinMisfits || count > most * solution.evaluation.used) return false;
-  const std::vector<std::size_t> moving = pairs_.YoungNear(frame, misfits);
+  const std::vector<std::size_t>& moving = pairs_.YoungNear(frame);
   if (count < kLeastShareOfMisfits * static_cast<double>(moving.size())) return false;
   const auto least_cost = [&] {
     const Pose2 found = SolvePaired(kStepsWithoutYoung, recent, solution).map_from_base;
@@ -250,7 +254,8 @@ MatchResult SurfelMatcher::Match(const std::vector<Surfel>& pieces, const Surfel
   if (!solution.found) return match;
   const double frame = map.newest_frame() - kYoungFrames;
   if (options_.judge_moving && prediction.motion_covariance) {
-    const Prior recent{prediction.map_from_base, InformationOf(*prediction.motion_covariance)};
+    const Prior recent{prediction.map_from_base,
+                       InformationOf(*prediction.motion_covariance + Squared(kLeastMotionSigma))};
     match.left_out_misfits = LeaveOutMisfits(frame, recent, prior, solution);
   }
   if (options_.judge_moving && !match.left_out_misfits && map.newest_frame() >= kFirstFrames) {

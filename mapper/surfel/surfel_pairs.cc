@@ -170,28 +170,27 @@ bool SurfelPairs::IsNearOneOf(const std::vector<std::size_t>& pieces, std::size_
   });
 }
 
-std::vector<std::size_t> SurfelPairs::MisfitsAt(double frame, const Pose2& map_from_base) const {
+const std::vector<std::size_t>& SurfelPairs::MisfitsAt(double frame, const Pose2& map_from_base) {
   const Motion2 motion(map_from_base);
-  std::vector<std::size_t> off;
+  off_.clear();
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
     if (IsYoung(i, frame) &&
         std::abs(SigmasOff(blocks_[i / kLanes], i % kLanes, motion)) > kExplainedSigmas) {
-      off.push_back(i);
+      off_.push_back(i);
     }
   }
-  std::vector<std::size_t> misfits;
-  std::copy_if(off.begin(), off.end(), std::back_inserter(misfits),
-               [&](std::size_t i) { return IsNearOneOf(off, i, kMisfitsApartM); });
-  return misfits;
+  misfits_.clear();
+  std::copy_if(off_.begin(), off_.end(), std::back_inserter(misfits_),
+               [&](std::size_t i) { return IsNearOneOf(off_, i, kMisfitsApartM); });
+  return misfits_;
 }
 
-std::vector<std::size_t> SurfelPairs::YoungNear(double frame,
-                                                const std::vector<std::size_t>& pieces) const {
-  std::vector<std::size_t> near;
+const std::vector<std::size_t>& SurfelPairs::YoungNear(double frame) {
+  near_.clear();
   for (std::size_t i = 0; i < pieces_->size(); ++i) {
-    if (IsYoung(i, frame) && IsNearOneOf(pieces, i, kPersonM)) near.push_back(i);
+    if (IsYoung(i, frame) && IsNearOneOf(misfits_, i, kPersonM)) near_.push_back(i);
   }
-  return near;
+  return near_;
 }
 
 double SurfelPairs::Chi2At(const Pose2& map_from_base) const {

@@ -44,9 +44,11 @@ class SurfelPairs {
   YoungPairs YoungAt(double frame, const Pose2& map_from_base) const;
   // The pieces of the young pairs that are more than three sigmas off at a pose, less those that no
   // other of them lies near to.
-  std::vector<std::size_t> MisfitsAt(double frame, const Pose2& map_from_base) const;
-  // The pieces of the young pairs within reach of a person from any of these.
-  std::vector<std::size_t> YoungNear(double frame, const std::vector<std::size_t>& pieces) const;
+  // Valid until the next call.
+  const std::vector<std::size_t>& MisfitsAt(double frame, const Pose2& map_from_base);
+  // The pieces of the young pairs within reach of a person from any of the last MisfitsAt(). Valid
+  // as long.
+  const std::vector<std::size_t>& YoungNear(double frame);
   // Sum of the squared residuals in sigmas, each limited to 25 and divided by what companions
   // share.
   double Chi2At(const Pose2& map_from_base) const;
@@ -87,7 +89,9 @@ class SurfelPairs {
 
   const std::vector<Surfel>* pieces_ = nullptr;
   std::vector<Block> blocks_;
-  std::vector<int> companies_;  // a member only to reuse its memory
+  // Members only to reuse their memory.
+  std::vector<int> companies_;
+  std::vector<std::size_t> off_, misfits_, near_;
   bool associated_ = false;
   double associated_yaw_rad_ = 0.0;
 };
