@@ -20,8 +20,8 @@ std::optional<bool> IsOffMap(const FrameReport& report);
 
 // Statistics over the last frames, since a single one may be off the map because a person stands
 // before the sensor. While lost, poses follow SLAM's motion alone; if the map explains the scans
-// again, SLAM has led back, or to a place that looks alike, or the mapper has found the place itself
-// (FrameReport::carried, relocated). If it does not, use FindStart() or FindStartNear()
+// again, SLAM has led back, or to a place that looks alike, or the mapper has found the place
+// itself (FrameReport::carried, relocated). If it does not, use FindStart() or FindStartNear()
 // (mapper/map_start.h) and a new mapper.
 class PlaceWatch {
  public:

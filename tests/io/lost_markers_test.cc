@@ -80,7 +80,8 @@ TEST_F(LostMarkerFiles, LeaveFramesWithoutAPose) {
   for (const bool interpolate : {false, true}) {
     const SlamInput input =
         ReadSlamFiles({Path("live.txt"), "", ""}, frames, {0.02, interpolate, 0.2});
-    EXPECT_THAT(input.warnings, Contains(HasSubstr("live.txt: 10 poses at the identity, far from")));
+    EXPECT_THAT(input.warnings,
+                Contains(HasSubstr("live.txt: 10 poses at the identity, far from")));
     EXPECT_THAT(input.notes, IsEmpty());
     for (std::size_t i = 0; i < live.size(); ++i) {
       EXPECT_EQ(input.slam.live[i].slam_from_camera.has_value(), i < 30 || i >= 40) << i;
