@@ -64,7 +64,8 @@ constexpr const char* kFrameColumns =
     "innovation_chi2,innovation_directions,match_score,match_iterations,innovation_rejected,cov_xx,"
     "cov_xy,cov_xyaw,cov_yy,cov_yyaw,"
     "cov_yawyaw,motion_from,motion_cov_xx,motion_cov_xy,motion_cov_xyaw,motion_cov_yy,"
-    "motion_cov_yyaw,motion_cov_yawyaw,beams,loops_accepted,loops_rejected,inserted,"
+    "motion_cov_yyaw,motion_cov_yawyaw,beams,loops_accepted,loops_rejected,inserted,guessed,"
+    "carried,"
     "camera_height_m,slam_error_m,map_error_m\n";
 
 }  // namespace
@@ -78,12 +79,12 @@ std::string FramesCsv(const MappingRun& run, const Trajectory* truth) {
   for (const FrameReport& r : run.reports) {
     const auto true_pose = truth_at.find(r.stamp_s);
     const Pose3* true_camera = true_pose == truth_at.end() ? nullptr : true_pose->second;
-    csv += fmt::format("{},{:.6f},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.index, r.stamp_s,
-                       r.slam_epoch, BaseCells(r.slam_from_camera), BaseCells(r.map_from_camera),
-                       MatchCells(r), CovarianceCells(r.covariance), MotionCells(r), BeamsCell(r),
-                       r.loops_accepted, r.loops_rejected, r.inserted ? 1 : 0, HeightCell(r),
-                       ErrorCell(r.slam_from_camera, true_camera),
-                       ErrorCell(r.map_from_camera, true_camera));
+    csv += fmt::format(
+        "{},{:.6f},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", r.index, r.stamp_s,
+        r.slam_epoch, BaseCells(r.slam_from_camera), BaseCells(r.map_from_camera), MatchCells(r),
+        CovarianceCells(r.covariance), MotionCells(r), BeamsCell(r), r.loops_accepted,
+        r.loops_rejected, r.inserted ? 1 : 0, r.guessed ? 1 : 0, r.carried ? 1 : 0, HeightCell(r),
+        ErrorCell(r.slam_from_camera, true_camera), ErrorCell(r.map_from_camera, true_camera));
   }
   return csv;
 }
