@@ -15,7 +15,7 @@ constexpr double kContradicted = 0.8;
 // The same without a gap, where the scan alone speaks for a jump (docs/tried.md, "Carried
 // elsewhere").
 constexpr double kCarried = 0.7;
-// And the least share of its beams that end where nothing stood before.
+// And the least share of its beams that end where nothing stood before (the same place).
 constexpr double kLeastNearer = 0.05;
 // In a finished map of which nothing, or next to nothing, is recognised: every so many such frames
 // it is looked whether the map is contradicted, and after so many contradictions in a row the place
