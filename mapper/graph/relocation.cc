@@ -15,6 +15,7 @@ namespace {
 constexpr int kUsualFrames = 1000;
 // Rate of the running mean recent_share_: about ten frames.
 constexpr double kNewShare = 0.1;
+// Frames between two judgements of the guess by them.
 constexpr int kFramesToJudge = 15;
 // Most points of the search; more give the same result.
 constexpr std::size_t kMostPoints = 400;
@@ -49,11 +50,11 @@ constexpr double kRarestRad = kPi;
 constexpr double kPartM = 30.0;
 constexpr int kMostOfPart = 100;
 // How far back along the way the scans of the last search reach, besides place.reach_m: where the
-// camera came back through what it had not seen, most of 3 m lies on nothing. And the share of
-// min_agreement that the whole part must reach then, as matches at the guess have bent it
-// (docs/tried.md, "Lost and found").
+// camera came back through what it had not seen, most of 3 m lies on nothing.
 constexpr double kLastReachM = 1.0;
-constexpr double kLastAgreement = 0.985;
+// The share of min_agreement that the whole part must reach then and where the guess is right, as
+// matches at the guess have bent it (docs/tried.md, "Lost and found").
+constexpr double kBentAgreement = 0.985;
 
 }  // namespace
 
@@ -184,7 +185,9 @@ bool Relocation::GuessIsRight(const std::vector<MappedFrame>& frames,
                               const std::shared_ptr<const Scan>& newest, ReferenceMap& reference) {
   const double share = reference.ShareSeenBefore(newest, frames.back().map_from_base, first_frame_);
   recent_share_ += kNewShare * (share - recent_share_);
-  return static_cast<int>(frames.size()) - first_frame_ >= kFramesToJudge && IsUsual(recent_share_);
+  const int since = static_cast<int>(frames.size()) - first_frame_;
+  return since % kFramesToJudge == 0 && IsUsual(recent_share_) &&
+         WholePartAgrees(frames, {}, kBentAgreement * options_.min_agreement);
 }
 
 // Whether both corrections move the frame to the same pose.
@@ -278,7 +281,7 @@ std::optional<Pose2> Relocation::FindAtLast(const std::vector<MappedFrame>& fram
     if (!found) continue;
     const std::optional<Pose2> again = Search(frames, *before, reach_m);
     if (again && IsSame(*found, *again, PoseAt(frames, last)) &&
-        WholePartAgrees(frames, *found, kLastAgreement * options_.min_agreement)) {
+        WholePartAgrees(frames, *found, kBentAgreement * options_.min_agreement)) {
       active_ = rare_ = false;
       return found;
     }
