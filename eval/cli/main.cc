@@ -74,7 +74,7 @@ void AddRender(Program& program) {
 
 void AddSlamFiles(CLI::App& app, MapArguments& arguments) {
   app.add_option("--poses", arguments.poses,
-                 "SLAM's live poses, TUM format or one matrix per frame; default: the folder's own")
+                 "SLAM's live poses (TUM, EuRoC, VINS, RTAB-Map, KITTI); default: the folder's own")
       ->type_name("FILE");
   app.add_option("--final-poses", arguments.final_poses,
                  "SLAM's poses after all corrections; without --loops, loops are derived from them")

@@ -71,7 +71,10 @@ std::string KeptText(const std::optional<KeptDepth>& kept) {
 std::string RemedyOf(const PoseDoubt& doubt) {
   switch (doubt.reading) {
     case PoseReading::kWFirst:
-      return "with quaternions that begin with w; rows must be t x y z qx qy qz qw";
+      return "with quaternions that begin with w; rows must be t x y z qx qy qz qw, or a header "
+             "line name their columns";
+    case PoseReading::kWLast:
+      return "with quaternions that end with w; a header line must name the columns so";
     case PoseReading::kInverse:
       return "with each pose inverted; poses must take the camera to the world";
     case PoseReading::kPositions:

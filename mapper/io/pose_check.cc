@@ -94,6 +94,7 @@ class BestReading {
   // Tries other interpretations of the numbers in the file.
   void TryWritten() {
     TryWritten(PoseReading::kWFirst, WithWFirst);
+    TryWritten(PoseReading::kWLast, WithWLast);
     TryWritten(PoseReading::kInverse, Inverted);
     TryAxes(CameraOf(Pose2{}, 0.0).rotation.inverse().toRotationMatrix());  // a robot's
     TryAxes(Eigen::Vector3d(1.0, -1.0, -1.0).asDiagonal());                 // OpenGL's

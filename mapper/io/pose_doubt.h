@@ -11,6 +11,7 @@ namespace depthgrid {
 // Other interpretations of the poses or the camera.
 enum class PoseReading {
   kWFirst,           // rows are t x y z qw qx qy qz
+  kWLast,            // rows that were read so are t x y z qx qy qz qw
   kInverse,          // the poses are camera_from_world
   kPositions,        // positions and rotations are in different world axes
   kYUp,              // for a camera whose y axis points up (negative fy)

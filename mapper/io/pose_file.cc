@@ -6,6 +6,7 @@
 #include "mapper/io/file.h"
 #include "mapper/io/matrix_poses.h"
 #include "mapper/io/number_rows.h"
+#include "mapper/io/trajectory_columns.h"
 #include "mapper/io/trajectory_file.h"
 
 namespace depthgrid {
@@ -28,6 +29,7 @@ Trajectory StampedMatrices(const std::string& text, const std::string& place,
 }  // namespace
 
 bool HoldsMatrices(const std::string& text) {
+  if (NamedColumns(text)) return false;
   constexpr std::size_t kLooksAt = 10;  // the first few may be damaged
   int matrices = 0;
   const std::vector<TextRow> rows = SplitRows(text);

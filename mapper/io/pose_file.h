@@ -1,4 +1,4 @@
-// Reads the poses of a sequence from a TUM trajectory or a file of matrices.
+// Reads the poses of a sequence from a trajectory (trajectory_file.h) or a file of matrices.
 #pragma once
 
 #include <optional>
@@ -10,7 +10,7 @@
 
 namespace depthgrid {
 
-// A TUM trajectory, or one matrix per frame (4x4 or 3x4, row-major, camera to world, as KITTI's),
+// A trajectory, or one matrix per frame (4x4 or 3x4, row-major, camera to world, as KITTI's),
 // which gets the frames' stamps (PairInOrder). Repairs are added to `warnings`. Throws InputError,
 // also when there is no pose.
 Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,
@@ -18,8 +18,8 @@ Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,
 Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
                       std::vector<std::string>& warnings);
 
-// Whether the text has matrices (4, 12 or 16 columns in its first rows) rather than a TUM
-// trajectory.
+// Whether the text has matrices (4, 12 or 16 columns in its first rows, which no header names)
+// rather than a trajectory.
 bool HoldsMatrices(const std::string& text);
 // The matrices of such a text; entries without a pose (NaN, damaged) are empty. Repairs are added
 // to `warnings`. Throws InputError.

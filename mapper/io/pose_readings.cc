@@ -9,6 +9,11 @@ Pose3 WithWFirst(const Pose3& pose) {
   return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()), pose.translation};
 }
 
+Pose3 WithWLast(const Pose3& pose) {
+  const Eigen::Quaterniond& q = pose.rotation;  // w x y z as read hold x y z w
+  return {Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), pose.translation};
+}
+
 Pose3 FromBodyAxes(const Pose3& pose) {
   const Eigen::Quaterniond body_from_camera = CameraOf(Pose2{}, 0.0).rotation;
   return {pose.rotation * body_from_camera, pose.translation};

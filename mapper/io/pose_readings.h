@@ -10,6 +10,8 @@ namespace depthgrid {
 
 // For rows of t x y z qw qx qy qz.
 Pose3 WithWFirst(const Pose3& pose);
+// For rows of t x y z qx qy qz qw that were read as the former.
+Pose3 WithWLast(const Pose3& pose);
 // For poses of robot axes at the camera: x forward, y left, z up.
 Pose3 FromBodyAxes(const Pose3& pose);
 // For poses of other axes at the camera. If `camera_from_own` is a reflection, their world is

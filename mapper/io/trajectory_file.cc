@@ -13,14 +13,17 @@
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
 #include "mapper/io/stamp_order.h"
+#include "mapper/io/trajectory_columns.h"
 
 namespace depthgrid {
 namespace {
 
 // Nothing for a row that means "no pose", with the reason in `damage`.
-std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& place,
-                            RowDamage& damage) {
-  Pose3 pose{Eigen::Quaterniond(row[7], row[4], row[5], row[6]), {row[1], row[2], row[3]}};
+std::optional<Pose3> PoseOf(const std::vector<double>& row, const TrajectoryColumns& columns,
+                            const std::string& place, RowDamage& damage) {
+  const auto [x, y, z] = columns.position;
+  const auto [qx, qy, qz, qw] = columns.rotation;
+  Pose3 pose{Eigen::Quaterniond(row[qw], row[qx], row[qy], row[qz]), {row[x], row[y], row[z]}};
   const double norm = pose.rotation.norm();
   if (!IsWithinReach(pose.translation)) {
     damage.LeaveOut(PositionBeyondReach(pose.translation, place));
@@ -38,19 +41,19 @@ std::optional<Pose3> PoseOf(const std::vector<double>& row, const std::string& p
 }
 
 // `seen`: the stamps of the poses before.
-void AddRow(const TextRow& row, const std::string& place, std::unordered_set<double>& seen,
-            TrajectoryFile& file) {
-  constexpr std::size_t kColumns = 8;
-  const std::vector<double> numbers = NumbersIn(row, kColumns, place);
+void AddRow(const TextRow& row, const TrajectoryColumns& columns, const std::string& place,
+            std::unordered_set<double>& seen, TrajectoryFile& file) {
+  const std::vector<double> numbers = NumbersIn(row, columns.count, place);
   const std::string row_place = PlaceOfLine(place, row.line);
-  RequireSeconds(numbers[0], row_place);
-  const std::optional<Pose3> pose = PoseOf(numbers, row_place, file.damage);
+  const double stamp_s = numbers[columns.stamp] / columns.units_a_second;
+  RequireSeconds(stamp_s, row_place);
+  const std::optional<Pose3> pose = PoseOf(numbers, columns, row_place, file.damage);
   if (!pose) return;
-  if (!file.poses.empty() && numbers[0] < file.poses.back().stamp_s) ++file.unsorted_stamps;
-  if (!seen.insert(numbers[0]).second) {
-    file.doubled_stamps.Add(fmt::format("{}: stamp {}", row_place, numbers[0]));
+  if (!file.poses.empty() && stamp_s < file.poses.back().stamp_s) ++file.unsorted_stamps;
+  if (!seen.insert(stamp_s).second) {
+    file.doubled_stamps.Add(fmt::format("{}: stamp {}", row_place, stamp_s));
   }
-  file.poses.push_back({numbers[0], *pose});
+  file.poses.push_back({stamp_s, *pose});
 }
 
 Trajectory SomePosesOf(TrajectoryFile file, const std::string& path) {
@@ -62,6 +65,7 @@ Trajectory SomePosesOf(TrajectoryFile file, const std::string& path) {
 
 std::vector<std::string> TrajectoryFile::Warnings(const std::string& name) const {
   std::vector<std::string> warnings;
+  if (!taken.empty()) warnings.push_back(name + ": " + taken);
   damage.AppendTo(warnings, name);
   damage.left_out().AppendTo(warnings, name, "pose",
                              "with NaN, a zero quaternion or beyond 10,000 km ignored");
@@ -75,10 +79,13 @@ TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place
   TrajectoryFile file;
   const std::vector<TextRow> rows = SplitRows(text);
   RequirePlainColumns(rows, place);
+  const TrajectoryColumns columns = ColumnsOf(text, rows, place);
+  file.taken = columns.taken;
   std::unordered_set<double> seen;
   std::vector<int> lines;  // of the poses
   for (const TextRow& row : rows) {
-    file.damage.Try([&] { AddRow(row, place, seen, file); });
+    if (row.line == columns.header_line) continue;
+    file.damage.Try([&] { AddRow(row, columns, place, seen, file); });
     if (lines.size() < file.poses.size()) lines.push_back(row.line);
   }
   file.damage.RequireMostGood(text);

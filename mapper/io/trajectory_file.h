@@ -1,4 +1,5 @@
-// TUM trajectories: lines `stamp tx ty tz qx qy qz qw`, one space between columns, `#` comments.
+// Trajectories of one pose a line. TUM's, which are written too, are lines `stamp tx ty tz qx qy qz
+// qw`, one space between columns, `#` comments; trajectory_columns.h has the others.
 #pragma once
 
 #include <optional>
@@ -14,6 +15,7 @@ namespace depthgrid {
 // counted.
 struct TrajectoryFile {
   Trajectory poses;
+  std::string taken;                       // TrajectoryColumns::taken
   int unsorted_stamps = 0;                 // rows earlier than their predecessor, sorted
   std::optional<std::string> clock_doubt;  // DoubtOfSorted
   Tally doubled_stamps;                    // all but the first row of each stamp, dropped
@@ -23,8 +25,8 @@ struct TrajectoryFile {
   std::vector<std::string> Warnings(const std::string& name) const;
 };
 
-// A row is damaged if it does not have eight numbers, its stamp is not finite or the norm of its
-// quaternion is not near 1. Throws InputError for an unreadable file and for one with mostly
+// A row is damaged if it does not have a number in each column, its stamp is not finite or the norm
+// of its quaternion is not near 1. Throws InputError for an unreadable file and for one with mostly
 // damaged rows.
 TrajectoryFile ReadTrajectoryFile(const std::string& path);
 // The same from text; `place` names it in errors.

@@ -15,6 +15,11 @@ Pose3 WFirst(const Pose3& pose) {
   return {Eigen::Quaterniond(q.z(), q.w(), q.x(), q.y()), pose.translation};
 }
 
+Pose3 WLast(const Pose3& pose) {
+  const Eigen::Quaterniond& q = pose.rotation;  // w x y z <- x y z w
+  return {Eigen::Quaterniond(q.x(), q.y(), q.z(), q.w()), pose.translation};
+}
+
 TEST(PoseCheck, RightPosesAreNotDoubted) {
   for (const double noise : {0.0, 0.01, 0.03}) {
     EXPECT_FALSE(DoubtOfPoses(PosedPairs(noise), kPairsCamera, GivenPoses(AsItIs), {})) << noise;
@@ -56,6 +61,7 @@ TEST(PoseCheck, NamesHowPosesAreMeant) {
   };
   const std::vector<std::pair<PoseReading, PoseChange>> readings = {
       {PoseReading::kWFirst, WFirst},
+      {PoseReading::kWLast, WLast},
       {PoseReading::kInverse, Inverted},
       {PoseReading::kAxes, body},
       {PoseReading::kAxes, gl}};
