@@ -3,12 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
 
 #include "mapper/core/error.h"
+#include "mapper/io/camera_keys.h"
+#include "mapper/io/camera_values.h"
 #include "mapper/io/config.h"
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
@@ -17,80 +18,11 @@
 namespace depthgrid {
 namespace {
 
-double NumberAt(const Config& config, const std::string& key, const std::string& place) {
-  const auto values = config.List(key);
-  const auto number = values.size() == 1 ? ParseNumber(values.front()) : std::nullopt;
-  if (!number || !std::isfinite(*number)) throw InputError(place, "'" + key + "' must be a number");
-  return *number;
-}
-
-std::vector<double> NumbersAt(const Config& config, const std::string& key,
-                              const std::string& place) {
-  std::vector<double> numbers;
-  for (const std::string& item : config.List(key)) {
-    const auto number = ParseNumber(item);
-    if (!number || !std::isfinite(*number)) {
-      throw InputError(place, "'" + key + "' must be a list of numbers");
-    }
-    numbers.push_back(*number);
-  }
-  return numbers;
-}
-
-int PixelsOf(double number, std::string_view key, const std::string& place) {
-  if (number != std::floor(number) || std::abs(number) > 1e6) {
-    throw InputError(place,
-                     fmt::format("'{}' is {}, must be a whole number of pixels", key, number));
-  }
-  return static_cast<int>(number);
-}
-
-int WholeAt(const Config& config, const std::string& key, const std::string& place) {
-  return PixelsOf(NumberAt(config, key, place), key, place);
-}
-
-// The first of several alternative keys that is present; empty when there is none.
-std::string FirstOf(const Config& config, std::initializer_list<const char*> keys) {
-  for (const char* key : keys) {
-    if (config.Has(key)) return key;
-  }
-  return "";
-}
-
-void SetMatrix(const std::vector<double>& row_major, std::size_t columns, const std::string& place,
-               PinholeCamera& camera) {
-  if (row_major.size() < 3 * columns || columns < 3) {
-    throw InputError(place, "the camera matrix must have three rows of three numbers");
-  }
-  const auto at = [&](std::size_t row, std::size_t column) {
-    return row_major[row * columns + column];
-  };
-  if (at(1, 0) != 0.0 || at(2, 0) != 0.0 || at(2, 1) != 0.0 || at(2, 2) != 1.0) {
-    throw InputError(place, "the camera matrix must be [fx 0 cx; 0 fy cy; 0 0 1]");
-  }
-  camera.fx_px = at(0, 0);
-  camera.cx_px = at(0, 2);
-  camera.fy_px = at(1, 1);
-  camera.cy_px = at(1, 2);
-}
-
-void SetDistortion(const std::vector<double>& coefficients, const std::string& place,
-                   PinholeCamera& camera) {
-  camera.distortion.fill(0.0);
-  for (std::size_t i = 0; i < coefficients.size(); ++i) {
-    if (i < camera.distortion.size()) {
-      camera.distortion[i] = coefficients[i];
-    } else if (coefficients[i] != 0.0) {
-      throw InputError(place, "only the plumb-bob distortion k1 k2 p1 p2 k3 is known");
-    }
-  }
-}
-
 CameraDescription FromOwn(const Config& config, const std::string& text, const std::string& place) {
   CameraDescription camera;
   camera.kind = "camera.yaml";
   camera.takes_usual_scale = !config.Has("depth_scale");
-  const double fy = config.Has("fy") ? NumberAt(config, "fy", place) : 0.0;
+  const double fy = config.Has("fy") ? NumberAt(config, "fy") : 0.0;
   camera.y_up = fy < 0.0;
   if (camera.y_up) {
     Config upright = config;
@@ -99,35 +31,6 @@ CameraDescription FromOwn(const Config& config, const std::string& text, const s
   } else {
     camera.file = ParseCameraFile(text, place);
   }
-  return camera;
-}
-
-// sensor_msgs/CameraInfo: as camera_calibration writes it (camera_matrix, distortion_coefficients)
-// or as a message is printed (K or k, D or d).
-CameraDescription FromRos(const Config& config, const std::string& place) {
-  CameraDescription camera;
-  camera.kind = "ROS CameraInfo";
-  camera.has_depth_scale = false;
-  const auto need = [&](std::initializer_list<const char*> keys) {
-    const std::string key = FirstOf(config, keys);
-    if (key.empty()) throw InputError(place, fmt::format("key '{}' is missing", *keys.begin()));
-    return key;
-  };
-  PinholeCamera& pinhole = camera.file.camera;
-  pinhole.width_px = WholeAt(config, need({"image_width", "width"}), place);
-  pinhole.height_px = WholeAt(config, need({"image_height", "height"}), place);
-  SetMatrix(NumbersAt(config, need({"camera_matrix.data", "K", "k"}), place), 3, place, pinhole);
-  const std::string model = config.Text("distortion_model", "plumb_bob");
-  const std::string key = FirstOf(config, {"distortion_coefficients.data", "D", "d"});
-  const std::vector<double> distortion =
-      key.empty() ? std::vector<double>{} : NumbersAt(config, key, place);
-  const bool distorted =
-      std::any_of(distortion.begin(), distortion.end(), [](double k) { return k != 0.0; });
-  if (distorted && model.find("plumb_bob") == std::string::npos &&
-      model.find("rational_polynomial") == std::string::npos) {
-    throw InputError(place, fmt::format("distortion_model is {}, must be plumb_bob", model));
-  }
-  SetDistortion(distortion, place, pinhole);
   return camera;
 }
 
@@ -188,22 +91,42 @@ CameraDescription FromOrbSlam(const std::string& text, const std::string& place)
   return camera;
 }
 
-CameraDescription FromMatrix(const std::string& text, const std::string& place) {
+// fx fy cx cy, and perhaps width height, on one line; or a matrix in rows or on one line.
+CameraDescription FromNumbers(const std::string& text, const std::string& place) {
   CameraDescription camera;
-  camera.kind = "camera matrix";
-  camera.has_size = false;
   camera.has_depth_scale = false;
+  PinholeCamera& pinhole = camera.file.camera;
+  const std::vector<TextRow> rows = SplitRows(text);
+  std::size_t columns = rows.front().fields.size();
   std::vector<double> row_major;
-  std::size_t columns = 0;
-  for (const TextRow& row : SplitRows(text)) {
-    columns = columns == 0 ? row.fields.size() : columns;
+  for (const TextRow& row : rows) {
     const std::vector<double> numbers = NumbersIn(row, columns, place);
     row_major.insert(row_major.end(), numbers.begin(), numbers.end());
   }
-  // A whole matrix on one line.
-  if (row_major.size() == columns && (columns == 9 || columns == 16))
-    columns = columns == 9 ? 3 : 4;
-  SetMatrix(row_major, columns, place, camera.file.camera);
+  const bool is_one_line = rows.size() == 1;
+  const std::string place_of_line = PlaceOfLine(place, rows.front().line);
+  camera.has_size = is_one_line && columns == 6;
+  if (is_one_line && (columns == 4 || columns == 6)) {
+    camera.kind = "fx fy cx cy";
+    pinhole.fx_px = row_major[0];
+    pinhole.fy_px = row_major[1];
+    pinhole.cx_px = row_major[2];
+    pinhole.cy_px = row_major[3];
+    if (columns == 6) {
+      pinhole.width_px = PixelsOf(row_major[4], "width", place_of_line);
+      pinhole.height_px = PixelsOf(row_major[5], "height", place_of_line);
+    }
+    return camera;
+  }
+  if (is_one_line && columns != 9 && columns != 12 && columns != 16) {
+    throw InputError(place_of_line,
+                     fmt::format("has {} numbers, must have 4 (fx fy cx cy), 6 (these, width and "
+                                 "height) or those of a matrix (9, 12, 16)",
+                                 columns));
+  }
+  camera.kind = "camera matrix";
+  if (is_one_line) columns = columns == 9 ? 3 : 4;
+  SetMatrix(row_major, columns, place, pinhole);
   return camera;
 }
 
@@ -214,7 +137,7 @@ bool StartsWithNumber(const std::string& text) {
 
 CameraDescription ParseCamera(const std::string& text, const std::string& place) {
   if (text.empty()) throw InputError(place, "is empty, must describe a camera");
-  if (StartsWithNumber(text)) return FromMatrix(text, place);
+  if (StartsWithNumber(text)) return FromNumbers(text, place);
   if (text.find("Camera.fx:") != std::string::npos ||
       text.find("Camera1.fx:") != std::string::npos) {
     return FromOrbSlam(text, place);
@@ -223,8 +146,8 @@ CameraDescription ParseCamera(const std::string& text, const std::string& place)
   const bool directive = text.starts_with("%YAML");
   const Config config = Config::FromText(
       directive ? text.substr(std::min(text.find('\n'), text.size())) : text, place);
-  if (!FirstOf(config, {"camera_matrix", "K", "k"}).empty()) return FromRos(config, place);
-  return FromOwn(config, text, place);
+  const auto camera = CameraByKeys(config);
+  return camera ? *camera : FromOwn(config, text, place);
 }
 
 }  // namespace
@@ -258,8 +181,11 @@ CameraDescription ReadCameraDescription(const std::string& path) {
 CameraDescription ReadCameraDescription(const std::string& path,
                                         std::vector<std::string>& warnings) {
   const std::string text = ReadTextFile(path);
-  WarnOfCut(path, text, warnings);
-  return ParseCameraDescription(text, path);
+  CameraDescription camera = ParseCameraDescription(text, path);
+  // What is in brackets cannot be cut.
+  if (!text.ends_with('}')) WarnOfCut(path, text, warnings);
+  if (!camera.taken.empty()) warnings.push_back(path + ": " + camera.taken);
+  return camera;
 }
 
 std::string NoDepthScale(const std::string& path, double scale_per_m) {

@@ -19,10 +19,11 @@ struct CameraDescription {
   // fy is given negative (ICL-NUIM): the camera's y axis points up. `file` holds it positive, and
   // poses are to be turned by FlipY.
   bool y_up = false;
+  std::string taken = {};  // what was taken for granted; empty if nothing was
 };
 
-// Our camera.yaml, a ROS CameraInfo (YAML of camera_calibration or of a printed message),
-// ORB-SLAM2/3 settings, or a text with a 3x3, 3x4 or 4x4 matrix. Throws InputError.
+// Our camera.yaml, those of camera_keys.h, ORB-SLAM2/3 settings, or a text with fx fy cx cy or with
+// a 3x3, 3x4 or 4x4 matrix. Throws InputError.
 CameraDescription ReadCameraDescription(const std::string& path);
 // Adds possible faults of the file to `warnings`.
 CameraDescription ReadCameraDescription(const std::string& path,

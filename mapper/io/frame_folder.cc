@@ -79,8 +79,9 @@ std::string CameraPathOf(const fs::path& folder) {
   std::vector<fs::path> candidates;
   for (const fs::path& place :
        {folder, folder / "intrinsic", fs::absolute(folder).lexically_normal().parent_path()}) {
-    for (const char* name : {"camera.yaml", "camera_info.yaml", "camera-intrinsics.txt",
-                             "intrinsic_depth.txt", "intrinsics.txt"}) {
+    for (const char* name :
+         {"camera.yaml", "camera_info.yaml", "camera-intrinsics.txt", "intrinsic_depth.txt",
+          "intrinsics.txt", "intrinsic.json", "camera_intrinsic.json", "intrinsics.json"}) {
       candidates.push_back(place / name);
     }
   }

@@ -1,8 +1,9 @@
-// Files of other programs' poses through the program: the result
+// Files of other programs' poses and cameras through the program: the result
 // is that of depthgrid's own files.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "mapper/io/camera_formats.h"
 #include "mapper/io/trajectory_file.h"
 #include "tests/eval/program.h"
 
@@ -64,6 +65,35 @@ TEST_F(ProgramGivenFiles, PosesOfOtherPrograms) {
   const Outcome refused = Program("map seq -o out2 --poses bare.txt");
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("bare.txt:1: has 9 columns, must have 8"));
+}
+
+TEST_F(ProgramGivenFiles, CamerasOfOtherPrograms) {
+  const std::string own = Mapped("seq").first;
+  const PinholeCamera c = ReadCameraDescription(Path("seq/camera.yaml")).file.camera;
+  Write("open3d.json",
+        fmt::format("{{\n\t\"width\" : {},\n\t\"height\" : {},\n\t\"intrinsic_matrix\" : \n\t[\n"
+                    "\t\t{},\n\t\t0,\n\t\t0,\n\t\t0,\n\t\t{},\n\t\t0,\n\t\t{},\n\t\t{},\n\t\t1\n"
+                    "\t]\n}}",
+                    c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px));
+  Write("realsense.json",
+        fmt::format("{{\"width\": {}, \"height\": {}, \"fx\": {}, \"fy\": {}, \"ppx\": {}, "
+                    "\"ppy\": {}, \"model\": \"distortion.brown_conrady\", \"coeffs\": [0.0, 0.0, "
+                    "0.0, 0.0, 0.0]}}",
+                    c.width_px, c.height_px, c.fx_px, c.fy_px, c.cx_px, c.cy_px));
+  Write("kalibr.yaml",
+        fmt::format("cam0:\n  camera_model: pinhole\n  distortion_coeffs: [0, 0, 0, 0]\n  "
+                    "distortion_model: radtan\n  intrinsics: [{}, {}, {}, {}]\n  resolution: [{}, "
+                    "{}]\n",
+                    c.fx_px, c.fy_px, c.cx_px, c.cy_px, c.width_px, c.height_px));
+  Write("numbers.txt", fmt::format("{} {} {} {}\n", c.fx_px, c.fy_px, c.cx_px, c.cy_px));
+  Write("sized.txt", fmt::format("{} {} {} {} {} {}\n", c.fx_px, c.fy_px, c.cx_px, c.cy_px,
+                                 c.width_px, c.height_px));
+  Write("matrix.txt", fmt::format("{} 0 {} 0\n0 {} {} 0\n0 0 1 0\n0 0 0 1\n", c.fx_px, c.cx_px,
+                                  c.fy_px, c.cy_px));
+  for (const char* file :
+       {"open3d.json", "realsense.json", "kalibr.yaml", "numbers.txt", "sized.txt", "matrix.txt"}) {
+    EXPECT_EQ(Mapped(std::string("seq --camera ") + file).first, own) << file;
+  }
 }
 
 }  // namespace

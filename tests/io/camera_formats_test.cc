@@ -108,7 +108,7 @@ TEST(CameraFormats, OneClearLineForEachFault) {
             "c: key 'image_width' is missing");
   EXPECT_EQ(DescriptionRefusal("width: 640\nheight: 480\nK: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
                                "distortion_model: equidistant\nD: [0.1, 0, 0, 0]\n"),
-            "c: distortion_model is equidistant, must be plumb_bob");
+            "c:4: distortion_model is equidistant, must be plumb_bob");
   for (const char* model : {"[]", "[plumb_bob]", "{a: b}"}) {
     EXPECT_EQ(DescriptionRefusal("width: 640\nheight: 480\nK: [500, 0, 320, 0, 500, 240, 0, 0, 1]\n"
                                  "distortion_model: " +

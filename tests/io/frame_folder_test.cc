@@ -122,8 +122,9 @@ TEST_F(FrameFolderTest, OneFileOfPoses) {
   ASSERT_EQ(frames.size(), 3U);
   EXPECT_EQ(frames[1].slam_from_camera->translation.x(), 1.0);
   EXPECT_FALSE(frames[2].slam_from_camera);
-  EXPECT_THAT(WarningsOf(*source),
-              ElementsAre("~/poses.txt: 2 poses for 3 frames, paired from the first",
+  EXPECT_THAT(
+      WarningsOf(*source),
+      ElementsAre("~/poses.txt: 2 poses for 3 frames, paired from the first",
                           "~: 1 of 3 frames has no pose"));
 }
 
@@ -252,7 +253,8 @@ TEST_F(FrameFolderTest, OneClearLineForEachFault) {
   EXPECT_EQ(OpenError(),
             "~: has no camera file (camera.yaml, camera-intrinsics.txt, ... or --camera FILE)");
   Write("camera-intrinsics.txt", "500 0\n");
-  EXPECT_THAT(OpenError(), HasSubstr("~/camera-intrinsics.txt: the camera matrix must have"));
+  EXPECT_THAT(OpenError(),
+              HasSubstr("~/camera-intrinsics.txt:1: has 2 numbers, must have 4 (fx fy cx cy)"));
   Write("camera-intrinsics.txt", "500 0 1.5\n0 500 1\n0 0 1\n");
   Write("frame-000000.pose.txt", "-inf 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   Write("frame-000001.pose.txt", "1 2 3\n");

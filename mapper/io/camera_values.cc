@@ -1,0 +1,91 @@
+#include "mapper/io/camera_values.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "mapper/core/error.h"
+#include "mapper/io/number_rows.h"
+
+namespace depthgrid {
+
+double NumberAt(const Config& config, const std::string& key) {
+  const auto values = config.List(key);
+  const auto number = values.size() == 1 ? ParseNumber(values.front()) : std::nullopt;
+  if (!number || !std::isfinite(*number)) {
+    throw InputError(config.PlaceOfKey(key), "'" + key + "' must be a number");
+  }
+  return *number;
+}
+
+std::vector<double> NumbersAt(const Config& config, const std::string& key) {
+  std::vector<double> numbers;
+  for (const std::string& item : config.List(key)) {
+    const auto number = ParseNumber(item);
+    if (!number || !std::isfinite(*number)) {
+      throw InputError(config.PlaceOfKey(key),
+                       fmt::format("'{}' holds {}, must be a list of numbers", key, item));
+    }
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+int PixelsOf(double number, std::string_view key, const std::string& place) {
+  if (number != std::floor(number) || std::abs(number) > 1e6) {
+    throw InputError(place,
+                     fmt::format("'{}' is {}, must be a whole number of pixels", key, number));
+  }
+  return static_cast<int>(number);
+}
+
+int WholeAt(const Config& config, const std::string& key) {
+  return PixelsOf(NumberAt(config, key), key, config.PlaceOfKey(key));
+}
+
+std::string FirstOf(const Config& config, const std::vector<std::string>& keys) {
+  for (const std::string& key : keys) {
+    if (config.Has(key)) return key;
+  }
+  return "";
+}
+
+std::string NeededOf(const Config& config, const std::vector<std::string>& keys) {
+  std::string key = FirstOf(config, keys);
+  if (key.empty()) {
+    throw InputError(config.Place(), fmt::format("key '{}' is missing", keys.front()));
+  }
+  return key;
+}
+
+void SetMatrix(const std::vector<double>& row_major, std::size_t columns, const std::string& place,
+               PinholeCamera& camera) {
+  if (row_major.size() < 3 * columns || columns < 3) {
+    throw InputError(place, "the camera matrix must have three rows of three numbers");
+  }
+  const auto at = [&](std::size_t row, std::size_t column) {
+    return row_major[row * columns + column];
+  };
+  if (at(1, 0) != 0.0 || at(2, 0) != 0.0 || at(2, 1) != 0.0 || at(2, 2) != 1.0) {
+    throw InputError(place, "the camera matrix must be [fx 0 cx; 0 fy cy; 0 0 1]");
+  }
+  camera.fx_px = at(0, 0);
+  camera.cx_px = at(0, 2);
+  camera.fy_px = at(1, 1);
+  camera.cy_px = at(1, 2);
+}
+
+void SetDistortion(const std::vector<double>& coefficients, const std::string& place,
+                   PinholeCamera& camera) {
+  camera.distortion.fill(0.0);
+  for (std::size_t i = 0; i < coefficients.size(); ++i) {
+    if (i < camera.distortion.size()) {
+      camera.distortion[i] = coefficients[i];
+    } else if (coefficients[i] != 0.0) {
+      throw InputError(place, "only the plumb-bob distortion k1 k2 p1 p2 k3 is known");
+    }
+  }
+}
+
+}  // namespace depthgrid
