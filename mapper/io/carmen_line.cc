@@ -116,7 +116,7 @@ std::optional<StatedPose> ReadPose(Tokens& tokens) {
 // Reads the end of a scan's line: `skip` numbers, the time, the host and the logger's time. Returns
 // the damage, if any.
 std::optional<CarmenDamage> ReadEnd(Tokens& tokens, std::string_view name, int skip,
-                                    CarmenScan& scan) {
+                                    double& end_stamp_s) {
   constexpr std::string_view kNoTime = "without a time";
   for (int i = 0; i < skip; ++i) {
     const std::string_view token = tokens.Next();
@@ -153,7 +153,7 @@ std::optional<CarmenDamage> ReadEnd(Tokens& tokens, std::string_view name, int s
       return Damage(name, "with more columns than it states (a lost line end?)");
     }
   }
-  scan.stamp_s = *stamp_s;
+  end_stamp_s = *stamp_s;
   return {};
 }
 
@@ -174,7 +174,7 @@ CarmenLine ParseFlaser(Tokens& tokens) {
   scan.odom_from_laser = laser->pose;
   scan.odom_from_robot = robot->pose;
   scan.stated_yaw_rad = laser->yaw_rad;
-  if (auto damage = ReadEnd(tokens, "FLASER", 0, scan)) return *damage;
+  if (auto damage = ReadEnd(tokens, "FLASER", 0, scan.stamp_s)) return *damage;
   return scan;
 }
 
@@ -205,11 +205,10 @@ std::string FaultOfAngles(double first_rad, double fov_rad, double resolution_ra
   return {};
 }
 
-// ROBOTLASER1 type start fov resolution max accuracy remission_mode n ranges.. m remissions..
-// laser_x y theta robot_x y theta tv rv forward side turn time host logger_time.
-CarmenLine ParseRobotLaser(Tokens& tokens) {
-  constexpr std::string_view kName = "ROBOTLASER1";
-  CarmenScan scan;
+// type start fov resolution max accuracy remission_mode n ranges.. m remissions.. Returns the
+// damage, if any.
+std::optional<CarmenDamage> ReadAngledReadings(Tokens& tokens, std::string_view name,
+                                               CarmenScan& scan) {
   constexpr const char* kFields[] = {"type",    "start angle", "field of view", "resolution",
                                      "maximum", "accuracy",    "remission mode"};
   double header[std::size(kFields)];
@@ -217,13 +216,13 @@ CarmenLine ParseRobotLaser(Tokens& tokens) {
     const std::string_view token = tokens.Next();
     const std::optional<double> number = ParseNumber(token);
     if (!number || !std::isfinite(*number)) {
-      return Damage(kName, "with a damaged header",
+      return Damage(name, "with a damaged header",
                     fmt::format("the {} is {}, must be a number", kFields[i], Shown(token)));
     }
     header[i] = *number;
   }
   NumberList ranges = ReadList(tokens, 2);
-  if (!ranges.fault.empty()) return Damage(kName, "with damaged readings", ranges.fault);
+  if (!ranges.fault.empty()) return Damage(name, "with damaged readings", ranges.fault);
   scan.range_m = std::move(ranges.values);
   const auto steps = static_cast<double>(scan.range_m.size() - 1);
   scan.first_bearing_rad = header[1];
@@ -231,23 +230,61 @@ CarmenLine ParseRobotLaser(Tokens& tokens) {
   scan.bearing_step_rad = header[3] > 0.0 ? header[3] : header[2] / steps;
   if (std::string fault = FaultOfAngles(header[1], header[2], header[3], scan.range_m.size());
       !fault.empty()) {
-    return Damage(kName, "with impossible angles", std::move(fault));
+    return Damage(name, "with impossible angles", std::move(fault));
   }
   scan.max_range_m = std::max(header[4], 0.0);
   if (const NumberList remissions = ReadList(tokens, 0); !remissions.fault.empty()) {
-    return Damage(kName, "with damaged remissions", remissions.fault);
+    return Damage(name, "with damaged remissions", remissions.fault);
   }
+  return {};
+}
+
+// ROBOTLASER1 readings laser_x y theta robot_x y theta tv rv forward side turn time host
+// logger_time.
+CarmenLine ParseRobotLaser(Tokens& tokens) {
+  constexpr std::string_view kName = "ROBOTLASER1";
+  CarmenScan scan;
+  if (auto damage = ReadAngledReadings(tokens, kName, scan)) return *damage;
   const auto laser = ReadPose(tokens);
   const auto robot = ReadPose(tokens);
   if (!laser || !robot) return Damage(kName, kDamagedPose);
   scan.odom_from_laser = laser->pose;
   scan.odom_from_robot = robot->pose;
   scan.stated_yaw_rad = laser->yaw_rad;
-  if (auto damage = ReadEnd(tokens, kName, 5, scan)) return *damage;
+  if (auto damage = ReadEnd(tokens, kName, 5, scan.stamp_s)) return *damage;
   return scan;
 }
 
-// PARAM name value time host logger_time. The front laser is the one of FLASER and ROBOTLASER1.
+CarmenDamage OfRawLine(CarmenDamage damage, bool is_scan) {
+  damage.is_scan = is_scan;
+  damage.is_raw = true;
+  return damage;
+}
+
+// RAWLASER1 readings time host logger_time.
+CarmenLine ParseRawLaser(Tokens& tokens) {
+  constexpr std::string_view kName = "RAWLASER1";
+  CarmenRawScan raw;
+  auto damage = ReadAngledReadings(tokens, kName, raw.scan);
+  if (!damage) damage = ReadEnd(tokens, kName, 0, raw.scan.stamp_s);
+  if (damage) return OfRawLine(std::move(*damage), true);
+  return raw;
+}
+
+// ODOM x y theta tv rv accel time host logger_time.
+CarmenLine ParseOdometry(Tokens& tokens) {
+  constexpr std::string_view kName = "ODOM";
+  CarmenOdometry odometry;
+  const auto robot = ReadPose(tokens);
+  if (!robot) return OfRawLine(Damage(kName, kDamagedPose), false);
+  odometry.odom_from_robot = robot->pose;
+  if (auto damage = ReadEnd(tokens, kName, 3, odometry.stamp_s)) {
+    return OfRawLine(std::move(*damage), false);
+  }
+  return odometry;
+}
+
+// PARAM name value time host logger_time. The front laser is the one of all three.
 CarmenLine ParseParameter(Tokens& tokens) {
   if (tokens.Next() != "robot_front_laser_max") return CarmenOther{};
   const std::optional<double> range_m = tokens.NextNumber();
@@ -283,6 +320,8 @@ CarmenLine ParseCarmenLine(std::string_view line) {
   if (name.empty() || name.front() == '#') return CarmenOther{};
   if (name == "FLASER") return ParseFlaser(tokens);
   if (name == "ROBOTLASER1") return ParseRobotLaser(tokens);
+  if (name == "RAWLASER1") return ParseRawLaser(tokens);
+  if (name == "ODOM") return ParseOdometry(tokens);
   if (name == "PARAM") return ParseParameter(tokens);
   if (IsMessageName(name)) return CarmenOther{};
   return CarmenDamage{kNamelessLine, false};

@@ -1,4 +1,4 @@
-// One scan line of a CARMEN log (FLASER or ROBOTLASER1), from text.
+// One line of a CARMEN log (a scan: FLASER, ROBOTLASER1 or RAWLASER1; odometry: ODOM), from text.
 #pragma once
 
 #include <cstddef>
@@ -47,7 +47,18 @@ struct CarmenMaximum {
   double range_m = 0.0;
 };
 
-// A line other than a scan: another message, a comment, an empty line.
+// RAWLASER1: a scan without poses.
+struct CarmenRawScan {
+  CarmenScan scan;
+};
+
+// ODOM: the robot's pose by its odometry.
+struct CarmenOdometry {
+  double stamp_s = 0.0;
+  Pose2 odom_from_robot;
+};
+
+// Another message, a comment, an empty line.
 struct CarmenOther {};
 // The reason for a line that cannot be from such a log.
 inline const std::string kNamelessLine = "a line that begins with no message name";
@@ -56,9 +67,11 @@ struct CarmenDamage {
   std::string reason;
   bool is_scan = true;     // it starts as a scan line does
   std::string fault = {};  // details: field, value and the rule it breaks
+  bool is_raw = false;     // RAWLASER1 or ODOM, of which most logs make no use
 };
 
-using CarmenLine = std::variant<CarmenScan, CarmenMaximum, CarmenOther, CarmenDamage>;
+using CarmenLine = std::variant<CarmenScan, CarmenRawScan, CarmenOdometry, CarmenMaximum,
+                                CarmenOther, CarmenDamage>;
 
 CarmenLine ParseCarmenLine(std::string_view line);
 

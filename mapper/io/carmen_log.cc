@@ -16,6 +16,7 @@
 #include "mapper/io/carmen_check.h"
 #include "mapper/io/carmen_line.h"
 #include "mapper/io/carmen_lines.h"
+#include "mapper/io/carmen_raw.h"
 #include "mapper/io/carmen_scan_impl.h"
 #include "mapper/io/carmen_twins.h"
 #include "mapper/io/laser_faults.h"
@@ -144,6 +145,13 @@ class CarmenLogSource : public FrameSource {
   // stamps show which are wrong; so too if all scans are written twice.
   void Survey() {
     Doubts doubts = ReadThrough();
+    if (lines_of_scans_ == 0 && raw_.Begin()) doubts = ReadAgain();
+    if (raw_.IsUsed() && !names_.stamps_s.empty()) {
+      warnings_.push_back(
+          path_ +
+          ": scans are RAWLASER1 lines, their poses the robot's of the ODOM lines around them; "
+          "sequence.laser.mount is where the laser is on it");
+    }
     if (const std::optional<int> first = twins_.FirstFlaser()) {
       warnings_.push_back(
           fmt::format("{}:{}: scans are written twice, as FLASER and as ROBOTLASER1: the latter, "
@@ -193,14 +201,16 @@ class CarmenLogSource : public FrameSource {
           "begins with no message name, must be a CARMEN log's; images are given by their folder "
           "and poses by --poses");
     }
-    throw InputError(path_, fmt::format("no usable FLASER or ROBOTLASER1 line among {}{}",
-                                        Counted(lines_.Number(), "line"),
-                                        warnings_.empty() ? "" : "; first: " + warnings_[0]));
+    throw InputError(path_,
+                     fmt::format("no usable FLASER, ROBOTLASER1 or RAWLASER1 line among {}{}",
+                                 Counted(lines_.Number(), "line"),
+                                 warnings_.empty() ? "" : "; first: " + warnings_[0]));
   }
 
   void Rewind() {
     lines_.Rewind();
     lines_of_scans_ = 0;
+    raw_.Rewind();
     clock_.Rewind();
     scans_ = 0;
     last_stamp_s_ = -std::numeric_limits<double>::infinity();
@@ -295,7 +305,7 @@ class CarmenLogSource : public FrameSource {
       if (names_.stamps_s.empty() && written->text.find('\0') != std::string_view::npos) {
         has_zero_bytes_ = true;
       }
-      CarmenLine line = ParseCarmenLine(written->text);
+      CarmenLine line = raw_.Take(ParseCarmenLine(written->text));
       if (const auto* damage = std::get_if<CarmenDamage>(&line)) {
         Note(damage->reason, damage->fault);
         lines_of_scans_ += damage->is_scan ? 1 : 0;
@@ -331,6 +341,7 @@ class CarmenLogSource : public FrameSource {
   std::size_t scans_ = 0;  // those used
   std::int64_t lines_of_scans_ = 0;
   FrameNames names_;
+  CarmenRaw raw_;
   ScanClock clock_;
   CarmenTwins twins_;
   bool leaves_out_flaser_ = false;

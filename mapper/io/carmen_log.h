@@ -1,7 +1,7 @@
 // Laser logs in CARMEN's text format: FLASER and ROBOTLASER1 lines become ready scans, and the
-// laser's odometry pose in the line is the prior (docs/formats.md, "Laser logs"). Other messages
-// (ODOM, RAWLASER1, ...) are ignored. Frames have the laser's poses even if the log states those of
-// the base (CarmenLogOptions::mount).
+// laser's odometry pose in the line is the prior (docs/formats.md, "Laser logs"); of a log that has
+// neither, RAWLASER1 lines with the poses of its ODOM lines. Other messages are ignored. Frames
+// have the laser's poses even if the log states those of the base (CarmenLogOptions::mount).
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Files of other programs' poses and cameras through the program: the result
+// Files of other programs' poses and cameras, and old laser logs, through the program: the result
 // is that of depthgrid's own files.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -94,6 +94,31 @@ TEST_F(ProgramGivenFiles, CamerasOfOtherPrograms) {
        {"open3d.json", "realsense.json", "kalibr.yaml", "numbers.txt", "sized.txt", "matrix.txt"}) {
     EXPECT_EQ(Mapped(std::string("seq --camera ") + file).first, own) << file;
   }
+}
+
+TEST_F(ProgramGivenFiles, ScansWithoutPosesAreThoseOfTheOdometry) {
+  std::string robot, raw;
+  for (int i = 0; i < 40; ++i) {
+    const double x_m = 1.0 + 0.03 * i, stamp_s = 0.1 * i;
+    std::string readings;
+    for (int k = 0; k < 181; ++k) {  // of a corridor 2 m wide that ends at 5 m
+      const double bearing_rad = (k - 90) * 3.14159265358979 / 180.0;
+      const double ahead_m = (5.0 - x_m) / std::max(1e-9, std::cos(bearing_rad));
+      const double aside_m = 1.0 / std::max(1e-9, std::abs(std::sin(bearing_rad)));
+      readings += fmt::format(" {:.4f}", std::min({ahead_m, aside_m, 80.0}));
+    }
+    const std::string head = " 0 -1.570796 3.141593 0.017453 80 0.01 0 181" + readings + " 0";
+    robot += fmt::format("ROBOTLASER1{} {} 0 0 {} 0 0 0 0 0 0 0 {:.6f} h {:.6f}\n", head, x_m, x_m,
+                         stamp_s, stamp_s);
+    raw += fmt::format("ODOM {} 0 0 0 0 0 {:.6f} h {:.6f}\n", x_m, stamp_s, stamp_s);
+    raw += fmt::format("RAWLASER1{} {:.6f} h {:.6f}\n", head, stamp_s, stamp_s);
+  }
+  Write("robot.log", robot);
+  Write("raw.log", raw);
+  const std::string own = Mapped("robot.log").first;
+  const auto [of_raw, said] = Mapped("raw.log");
+  EXPECT_EQ(of_raw, own);
+  EXPECT_THAT(said, HasSubstr("raw.log: scans are RAWLASER1 lines"));
 }
 
 }  // namespace

@@ -231,7 +231,7 @@ TEST(CarmenLog, RefusesFilesWithoutScan) {
     OpenCarmenLog(file.path());
     FAIL();
   } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("no usable FLASER or ROBOTLASER1"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("no usable FLASER, ROBOTLASER1 or RAWLASER1"));
     EXPECT_THAT(error.what(), testing::HasSubstr(":2: FLASER with damaged readings"));
   }
   EXPECT_THROW(OpenCarmenLog("/nonexistent/file.log"), InputError);
