@@ -108,6 +108,7 @@ DepthSequence ReadDepthSequence(const std::string& path, SequenceFormat format,
                                 const SequenceOptions& options,
                                 const std::optional<SlamOutput>& slam) {
   DepthSequence sequence = ReadAsWritten(path, format, options, slam);
+  sequence.recording.poses_given = slam.has_value();
   if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
   if (options.recording.drop_body) internal::LeaveOutBody(options.recording, sequence);
   return sequence;

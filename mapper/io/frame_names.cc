@@ -145,6 +145,17 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
   return InterpolationRemedy(names, pose_stamps_s);
 }
 
+// What is assumed of poses without stamps that are not as many as the frames, and the remedy.
+std::string PairedFromTheFirst(std::size_t poses, std::size_t frames) {
+  const std::string assumed = poses < frames
+                                  ? fmt::format("taken for the first {}", Counted(poses, "frame"))
+                                  : fmt::format("the first {} are taken for them", frames);
+  return fmt::format(
+      "without stamps: {}; if they are of others, give a row with a stamp for each "
+      "(t x y z qx qy qz qw), or a row for each frame (NaN where there is no pose)",
+      assumed);
+}
+
 }  // namespace
 
 bool AreOfOtherUnits(double span_s, double other_span_s) {
@@ -196,9 +207,9 @@ std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> 
   }
   const auto last = static_cast<std::size_t>(frames.NumberOf(count - 1));
   const bool by_number = poses.size() == last + 1;
-  warnings.push_back(fmt::format("{}: {} for {}, paired {}", place, Counted(poses.size(), "pose"),
-                                 Counted(count, "frame"),
-                                 by_number ? "by the frames' numbers" : "from the first"));
+  warnings.push_back(fmt::format(
+      "{}: {} for {}, {}", place, Counted(poses.size(), "pose"), Counted(count, "frame"),
+      by_number ? "paired by the frames' numbers" : PairedFromTheFirst(poses.size(), count)));
   std::vector<std::optional<Pose3>> paired(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pose = by_number ? static_cast<std::size_t>(frames.NumberOf(i)) : i;

@@ -116,10 +116,10 @@ class RecordingSource final : public FrameSource {
     }
     const std::size_t frames = ImagesOfPart(recording_).size();
     if (without == frames) throw NoImageHasPose(slam, options);
-    if (without > 0) {
+    if (without > 0 && !IsToldByReader(slam)) {
       recording_.warnings.push_back(fmt::format(
           "{}: {} of {} {} no pose{}", recording_.name, without, Counted(frames, "frame"),
-          without == 1 ? "has" : "have", WhyWithout(slam, options, frames - without)));
+          without == 1 ? "has" : "have", WhyWithout(slam, options)));
     }
     int lost_loops = 0;
     loops_ = LoopsByFrame(slam.loops, poses_, lost_loops);
@@ -163,19 +163,27 @@ class RecordingSource final : public FrameSource {
     return {recording_.name, fmt::format("no pose within {} s of any image: {}",
                                          options.max_stamp_difference_s, Ranges(slam, options))};
   }
-  // Explains missing poses. Poses paired with frames in order have the frames' stamps; their reader
-  // already gave the reason.
-  std::string WhyWithout(const SlamOutput& slam, const RecordingOptions& options,
-                         std::size_t with_pose) const {
-    const bool by_frame = std::any_of(slam.live.begin(), slam.live.end(),
-                                      [](const SlamPose& pose) { return !pose.slam_from_camera; });
-    if (by_frame) return "";
+  // Whether poses are paired with frames, which have their stamps.
+  static bool HasPosesByFrame(const SlamOutput& slam) {
+    return std::any_of(slam.live.begin(), slam.live.end(),
+                       [](const SlamPose& pose) { return !pose.slam_from_camera; });
+  }
+  // Whether so many poses are missing that it should be explained.
+  bool LacksMany() const {
     std::vector<bool> has_pose;
     for (std::size_t i = recording_.part.begin; i < EndOfPart(); ++i) {
       has_pose.push_back(poses_[i].slam_from_camera.has_value());
     }
-    if (!MostLackPoses(with_pose, has_pose.size()) && !LacksEachSecondPose(has_pose)) return "";
-    return ": " + Ranges(slam, options);
+    const auto with_pose = std::count(has_pose.begin(), has_pose.end(), true);
+    return MostLackPoses(static_cast<std::size_t>(with_pose), has_pose.size()) ||
+           LacksEachSecondPose(has_pose);
+  }
+  // ReadSlamFiles tells, with the file's name and stamps.
+  bool IsToldByReader(const SlamOutput& slam) const {
+    return recording_.poses_given && HasPosesByFrame(slam) && LacksMany();
+  }
+  std::string WhyWithout(const SlamOutput& slam, const RecordingOptions& options) const {
+    return HasPosesByFrame(slam) || !LacksMany() ? "" : ": " + Ranges(slam, options);
   }
   std::string Ranges(const SlamOutput& slam, const RecordingOptions& options) const {
     std::vector<double> stamps_s;  // entries paired with frames in order may lack a pose

@@ -30,6 +30,8 @@ struct Recording {
   CameraFile camera;
   std::vector<std::string> warnings;  // found while listing
   FramePart part = {};                // the images that are read and become frames
+  // The poses are not the folder's own: their reader told if most of the frames have none.
+  bool poses_given = false;
 };
 
 FramePart FindPart(const PartOptions& part, const Recording& recording);

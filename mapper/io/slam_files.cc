@@ -275,7 +275,8 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   SlamOutput& slam = input.slam;
   SlamEvents events;
   if (!paths.loops.empty()) events = TakeEvents(paths.loops, frames, max_difference_s, input);
-  const Trajectory live = ReadPoseFile(paths.live, frames, input.warnings);
+  const std::string text = ReadTextFile(paths.live);
+  const Trajectory live = ParsePoses(text, paths.live, frames, input.warnings);
   std::vector<std::string> unsaid;  // dropped: poses of no frame are needed for interpolation
   const auto framed = PosesByFrame(live, frames, max_difference_s, paths.live,
                                    reading.interpolate ? unsaid : input.warnings);
@@ -320,7 +321,10 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   for (std::size_t i = frames.part.begin; i < frames.part.EndAmong(slam.live.size()); ++i) {
     has_pose.push_back(slam.live[i].slam_from_camera.has_value());
   }
-  WarnOfFew(posed, frames, live, paths.live, LacksEachSecondPose(has_pose), input.warnings);
+  // Matrices have the stamps of the frames that they were paired with.
+  if (!HoldsMatrices(text)) {
+    WarnOfFew(posed, frames, live, paths.live, LacksEachSecondPose(has_pose), input.warnings);
+  }
   return input;
 }
 

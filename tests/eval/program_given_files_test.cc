@@ -96,6 +96,35 @@ TEST_F(ProgramGivenFiles, CamerasOfOtherPrograms) {
   }
 }
 
+// One line each tells how many frames have no pose, and what was assumed.
+TEST_F(ProgramGivenFiles, FewPosesAreToldOnce) {
+  const Trajectory few(truth_.begin(), truth_.begin() + 4);
+  WriteTrajectory(Path("few.txt"), few);
+  const auto lines_about_poses = [&](const std::string& arguments) {
+    const std::string said = Mapped(arguments).second;
+    std::vector<std::string> lines;
+    for (std::size_t at = 0; at < said.size(); at = said.find('\n', at) + 1) {
+      const std::string line = said.substr(at, said.find('\n', at) - at);
+      if (line.find("frames") != std::string::npos) lines.push_back(line);
+    }
+    return lines;
+  };
+  EXPECT_THAT(lines_about_poses("seq --poses few.txt"),
+              ::testing::ElementsAre(HasSubstr("few.txt: gives 4 of 12 frames a pose: ")));
+  std::string matrices;
+  for (const StampedPose& pose : few) {
+    const Eigen::Matrix3d r = pose.world_from_camera.rotation.toRotationMatrix();
+    for (int row = 0; row < 3; ++row) {
+      matrices += fmt::format("{} {} {} {}{}", r(row, 0), r(row, 1), r(row, 2),
+                              pose.world_from_camera.translation[row], row < 2 ? " " : "\n");
+    }
+  }
+  Write("kitti.txt", matrices);
+  EXPECT_THAT(lines_about_poses("seq --poses kitti.txt"),
+              ::testing::ElementsAre(HasSubstr("kitti.txt: 4 poses for 12 frames, without stamps: "
+                                               "taken for the first 4 frames; if they")));
+}
+
 TEST_F(ProgramGivenFiles, ScansWithoutPosesAreThoseOfTheOdometry) {
   std::string robot, raw;
   for (int i = 0; i < 40; ++i) {
