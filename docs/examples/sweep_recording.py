@@ -149,7 +149,7 @@ class Sweep:
         shown = [name for name in ("online.mean_euclidean_m", "est.mean_euclidean_m", "est.ate_rmse_se2_m") if name in rows[0]]
         shown = shown or ["through_walls_percent"]
         keys = [key for key, _ in self.axes]
-        print("  ".join(keys + shown))
+        lines = [keys + shown]
         points = {}
         for row in rows:
             points.setdefault(tuple(row[key] for key in keys), []).append(row)
@@ -158,7 +158,10 @@ class Sweep:
             for name in shown:
                 values = [row[name] for row in group if isinstance(row[name], (int, float))]
                 cells.append(f"{sum(values) / len(values):.4f} ({max(values):.4f})" if values else "-")
-            print("  ".join([*point, *cells]))
+            lines.append([*point, *cells])
+        widths = [max(len(cell) for cell in column) for column in zip(*lines)]
+        for line in lines:
+            print("  ".join(cell.rjust(width) for cell, width in zip(line, widths)))
 
 
 def main():

@@ -40,6 +40,8 @@ YAML
 all=(seq -o table --slam orb_slam2 --seeds 2 --axis slam.drift_scale=1,30 --axis mapper.fusion.gain=0,1)
 rest=(-- --up z --set mapper.fusion.mode=fixed)
 sweep "${all[@]}" -j 2 "${rest[@]}" || fail 'the sweep'
+[ "$(grep -c '^ *[0-9.]*  .*(' out)" = 4 ] || fail 'four points in the table that is shown'
+[ "$(head -5 out | awk '{print length}' | sort -u | wc -l)" = 1 ] || fail 'its columns are not aligned'
 [ "$(wc -l <table/results.csv)" = 9 ] || fail 'eight runs and a line of names'
 head -1 table/results.csv | grep -q '^slam.drift_scale,mapper.fusion.gain,slam_seed,.*est.mean_euclidean_m' || fail 'names'
 # K = 0 is SLAM's trajectory, so the fifth run (drift 30, K = 0, seed 1) has its very score.
