@@ -43,42 +43,6 @@ void IncrementalMapper::SetMatchOracle(MatchOracle oracle) {
   state_->match_oracle = std::move(oracle);
 }
 
-void IncrementalMapper::StartFrom(PriorMap prior) {
-  if (!state_->history.records().empty() || state_->prior_start) {
-    throw InputError("prior map", "must be given before the first frame, once");
-  }
-  RequireSound(prior);
-  const int scans = state_->options.submap.scans;
-  if (state_->options.method == MapperMethod::kPaper &&
-      prior.frames.size() > static_cast<std::size_t>(scans)) {
-    throw InputError("prior map", "has " + std::to_string(prior.frames.size()) +
-                                      " frames, mapper.submap.scans is " + std::to_string(scans) +
-                                      ", must be at least as many with mapper.method paper");
-  }
-  // SLAM's motion is replaced by that of the final poses, without SLAM's errors.
-  for (std::size_t i = 1; i < prior.frames.size(); ++i) {
-    prior.frames[i].slam_motion =
-        Between(prior.frames[i - 1].map_from_base, prior.frames[i].map_from_base);
-  }
-  state_->has_prior = true;
-  state_->prior_frames = static_cast<int>(prior.frames.size());
-  state_->mapped.StartFrom(std::move(prior.frames));
-  state_->InsertPrior();
-  state_->fixed_map = prior.fixed;
-  state_->prior_start = prior.map_from_slam;
-  state_->beginning.End();  // in a finished map, SLAM's errors are corrected from the start
-}
-
-void IncrementalMapper::State::InsertPrior() {
-  if (!reference) return;
-  for (const MappedFrame& frame : mapped.all()) {
-    reference->Insert(std::make_shared<const Scan>(*frame.scan), frame.map_from_base,
-                      Eigen::Matrix3d::Zero());
-  }
-  // Only the match determines the pose of the first new frame relative to the last prior one.
-  reference->BeginPart(PartPlace::kKnown);
-}
-
 FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   RequireSound(frame, state_->camera);
   FrameReport report;

@@ -181,15 +181,21 @@ struct Tried {
   double against = 0.0;
 };
 
-Tried Try(const Pose2& map_from_slam, const PriorMap& prior, const DistanceField& walls,
-          const std::vector<Frame>& frames, const MapperOptions& options) {
+// A mapper in the prior map, from which those of all trials are started.
+IncrementalMapper TrialMapper(const PriorMap& prior, const MapperOptions& options) {
   PriorMap fixed = prior;
   fixed.fixed = true;
-  fixed.map_from_slam = map_from_slam;
+  fixed.map_from_slam = {};  // each trial has its own
   MapperOptions trial = options;
   trial.loops.relocation.use = false;  // the place to be judged is the given one
   IncrementalMapper mapper(trial, std::nullopt);
   mapper.StartFrom(std::move(fixed));
+  return mapper;
+}
+
+Tried Try(const Pose2& map_from_slam, const IncrementalMapper& in_map, const DistanceField& walls,
+          const std::vector<Frame>& frames) {
+  IncrementalMapper mapper = in_map.StartedAt(map_from_slam);
   Tried tried;
   tried.map_from_slam = map_from_slam;
   MapAgreement agreement;
@@ -210,14 +216,14 @@ bool LedElsewhere(const Tried& a, const Tried& b) {
 
 // The first views may determine their place poorly, as before one wall, while later ones do:
 // localises backwards from the end to the start.
-Pose2 Retraced(const Tried& best, const PriorMap& prior, const DistanceField& walls,
-               const std::vector<Frame>& frames, const MapperOptions& options) {
+Pose2 Retraced(const Tried& best, const IncrementalMapper& in_map, const DistanceField& walls,
+               const std::vector<Frame>& frames) {
   std::vector<Frame> back(frames.rbegin(), frames.rend());
   for (std::size_t i = 0; i < back.size(); ++i) {
     back[i].index = static_cast<int>(i);
     back[i].stamp_s = frames.back().stamp_s - back[i].stamp_s;
   }
-  const Tried retraced = Try(best.last_map_from_slam, prior, walls, back, options);
+  const Tried retraced = Try(best.last_map_from_slam, in_map, walls, back);
   const bool as_good = retraced.agreement >= kRetracedShare * best.agreement;
   return as_good ? retraced.last_map_from_slam : best.map_from_slam;
 }
@@ -251,9 +257,10 @@ void TryAll(FirstFrames& frames, const PriorMap& prior, const OccupancyMap& map,
                          PlacedScanOf(frames.all()[newest]).slam_from_base));
   }
   const DistanceField walls(map, kOffWallM + map.geometry.resolution_m);
-  std::vector<Tried> all = {Try(start.place.map_from_slam, prior, walls, frames.all(), options)};
+  const IncrementalMapper in_map = TrialMapper(prior, options);
+  std::vector<Tried> all = {Try(start.place.map_from_slam, in_map, walls, frames.all())};
   for (const Pose2& other : start.place.others) {
-    all.push_back(Try(other, prior, walls, frames.all(), options));
+    all.push_back(Try(other, in_map, walls, frames.all()));
   }
   const auto most = std::max_element(all.begin(), all.end(), [](const Tried& a, const Tried& b) {
     return a.agreement < b.agreement;
@@ -272,7 +279,7 @@ void TryAll(FirstFrames& frames, const PriorMap& prior, const OccupancyMap& map,
   }
   start.trial = trial;
   start.place.map_from_slam = best.map_from_slam;
-  const Pose2 retraced = Retraced(best, prior, walls, frames.all(), options);
+  const Pose2 retraced = Retraced(best, in_map, walls, frames.all());
   if (FitsThere(map, views, retraced, best.map_from_slam)) start.place.map_from_slam = retraced;
 }
 

@@ -50,7 +50,7 @@ struct MapStart {
 // from the end refines the start. Empty when no scan has a return. `prior.map_from_slam` is
 // ignored; the result's place.map_from_slam is its value. Reads the first 3 m of the source,
 // however long the robot stands before, then up to 6 m more or 400 frames in all. Takes about a
-// second, more for large maps. Throws InputError as StartFrom() and AddFrame() do.
+// second, two for a map of 10,000 scans. Throws InputError as StartFrom() and AddFrame() do.
 std::optional<MapStart> FindStart(const PriorMap& prior, FrameSource& source,
                                   const MapperOptions& options);
 // The same with collected first frames of a live robot; the more of those 9 m they cover, the more

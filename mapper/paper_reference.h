@@ -19,6 +19,9 @@ class PaperReference : public ReferenceMap {
   PaperReference(const GridOptions& grid, const SubmapOptions& submap,
                  const ScanMatcherOptions& match, const GraphOptions& graph);
 
+  std::unique_ptr<ReferenceMap> Clone() const override {
+    return std::make_unique<PaperReference>(*this);
+  }
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   std::span<const MapPart> MatchedParts() const override { return {&part_, 1}; }
   void Insert(const std::shared_ptr<const Scan>& scan, const Pose2& map_from_base,

@@ -60,6 +60,8 @@ class ReferenceMap {
  public:
   virtual ~ReferenceMap() = default;
 
+  // A copy that shares nothing with this map.
+  virtual std::unique_ptr<ReferenceMap> Clone() const = 0;
   // Matches around the prediction. Called for every frame once something is mapped. The
   // prediction's covariance may limit or regularise the search, but must not enter the result.
   virtual MatchResult Match(const std::shared_ptr<const Scan>& scan,

@@ -44,6 +44,9 @@ class SurfelMap : public ReferenceMap {
  public:
   explicit SurfelMap(const SurfelOptions& options);
 
+  std::unique_ptr<ReferenceMap> Clone() const override {
+    return std::make_unique<SurfelMap>(*this);
+  }
   MatchResult Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction) override;
   std::span<const MapPart> MatchedParts() const override { return parts_; }
   void Corrected(const Pose2& map_from_previous, const Pose2& corrected) override;

@@ -12,67 +12,10 @@
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/surfel/surfel_map.h"
-#include "tests/mapper/match_world.h"
+#include "tests/mapper/prior_round.h"
 
 namespace depthgrid {
 namespace {
-
-constexpr int kPriorRound = 298;  // so that it does not end where a group of frames does
-constexpr PlanarLaser kPriorLaser{
-    .beams = 160, .field_of_view_rad = RadFromDeg(90), .sigma_of_range = 0.01};
-// SLAM's motions are off by this, a frame: over a round by 0.3 m.
-const Pose2 kDrift{1.6e-3, 1e-3, 1.2e-3};
-// The new frames' place when they begin, off by so much.
-const Pose2 kStartOff{0.03, -0.02, 0.01};
-
-// Once round a furnished room.
-Pose2 TruthAt(int i) {
-  const double turn_rad = 2.0 * kPi * i / kPriorRound;
-  return {3.0 + 0.8 * std::cos(turn_rad), 1.5 + 0.8 * std::sin(turn_rad),
-          WrapAngle(turn_rad + 0.5 * kPi)};
-}
-
-Scan PriorScanAt(int i, std::uint64_t seed) {
-  return ScanOf(FurnishedRoom(), TruthAt(i), kPriorLaser, seed, static_cast<std::uint32_t>(i));
-}
-
-// A round's map, as good as it can be.
-PriorMap FinishedRound() {
-  ScanArchive archive;
-  PriorMap prior;
-  for (int i = 0; i < kPriorRound; ++i) {
-    MappedFrame frame;
-    frame.frame = i - kPriorRound;
-    frame.stamp_s = i / 30.0;
-    frame.scan = frame.obstacles = archive.Keep(PriorScanAt(i, 1));
-    frame.map_from_base = TruthAt(i);
-    prior.frames.push_back(frame);
-  }
-  prior.map_from_slam = kStartOff;
-  return prior;
-}
-
-double PoseErrorM(const Pose2& pose, const Pose2& truth) {
-  return Between(truth, pose).translation().norm();
-}
-
-// SLAM's pose of each frame of another round.
-std::vector<Pose2> DriftedRound() {
-  std::vector<Pose2> slam_from_base = {TruthAt(0)};
-  for (int i = 1; i < kPriorRound; ++i) {
-    slam_from_base.push_back(slam_from_base.back() * Between(TruthAt(i - 1), TruthAt(i)) * kDrift);
-  }
-  return slam_from_base;
-}
-
-Frame PriorFrameAt(int i, const Pose2& slam_from_base) {
-  Frame frame;
-  frame.index = i;
-  frame.stamp_s = i / 30.0;
-  frame.slam_from_camera = CameraOf(slam_from_base, 0.0);
-  frame.scan = std::make_shared<Scan>(PriorScanAt(i, 2));
-  return frame;
-}
 
 struct RoundErrors {
   double worst_online_m = 0.0;
@@ -86,21 +29,21 @@ RoundErrors ErrorsOfASecondRound(const MapperOptions& options, int frames = kPri
   mapper.StartFrom(FinishedRound());
   RoundErrors errors;
   const std::vector<Pose2> slam_from_base = DriftedRound();
-  EXPECT_GT(PoseErrorM(slam_from_base.back(), TruthAt(kPriorRound - 1)), 0.2);
+  EXPECT_GT(PriorErrorM(slam_from_base.back(), PriorTruthAt(kPriorRound - 1)), 0.2);
   for (int i = 0; i < frames; ++i) {
     const FrameReport report =
         mapper.AddFrame(PriorFrameAt(i, slam_from_base[static_cast<std::size_t>(i)]));
-    const double online_m = PoseErrorM(BaseOf(*report.map_from_camera), TruthAt(i));
+    const double online_m = PriorErrorM(BaseOf(*report.map_from_camera), PriorTruthAt(i));
     errors.worst_online_m = std::max(errors.worst_online_m, online_m);
   }
   const MapperResult result = mapper.Finish();
   for (int i = 0; i < frames; ++i) {
     const Pose3& pose = *result.map_from_camera[static_cast<std::size_t>(i)];
-    errors.worst_m = std::max(errors.worst_m, PoseErrorM(BaseOf(pose), TruthAt(i)));
+    errors.worst_m = std::max(errors.worst_m, PriorErrorM(BaseOf(pose), PriorTruthAt(i)));
   }
   for (int i = 0; i < kPriorRound; ++i) {
     const Pose2& pose = result.mapped[static_cast<std::size_t>(i)].map_from_base;
-    errors.prior_m = std::max(errors.prior_m, PoseErrorM(pose, TruthAt(i)));
+    errors.prior_m = std::max(errors.prior_m, PriorErrorM(pose, PriorTruthAt(i)));
   }
   return errors;
 }
@@ -228,7 +171,7 @@ TEST(PriorMap, AFrameBeyondTheMapIsNotMapped) {
   IncrementalMapper mapper({}, std::nullopt);
   mapper.StartFrom(prior);
   for (int i = 0; i < 3; ++i) {
-    EXPECT_FALSE(mapper.AddFrame(PriorFrameAt(i, Pose2{9e6, 0.0, 0.0} * TruthAt(i))).inserted);
+    EXPECT_FALSE(mapper.AddFrame(PriorFrameAt(i, Pose2{9e6, 0.0, 0.0} * PriorTruthAt(i))).inserted);
   }
   EXPECT_LT(mapper.Finish().map.geometry.width_cells, 400);
 }
@@ -252,8 +195,9 @@ TEST(PriorMap, WithoutANewFrameItStaysWhereItWas) {
   const MapperResult result = mapper.Finish();
   ASSERT_EQ(result.mapped.size(), static_cast<std::size_t>(kPriorRound));
   for (int i = 0; i < kPriorRound; ++i) {
-    EXPECT_LT(PoseErrorM(result.mapped[static_cast<std::size_t>(i)].map_from_base, TruthAt(i)),
-              0.005);
+    EXPECT_LT(
+        PriorErrorM(result.mapped[static_cast<std::size_t>(i)].map_from_base, PriorTruthAt(i)),
+        0.005);
   }
 }
 
@@ -266,12 +210,12 @@ TEST(PriorMap, AFrameWithoutAMapIsKeptToTheEnd) {
   PriorMap prior;
   prior.map_from_slam = {100.0, 0.0, 0.0};
   mapper.StartFrom(prior);
-  Frame lost = PriorFrameAt(0, TruthAt(0));
+  Frame lost = PriorFrameAt(0, PriorTruthAt(0));
   lost.slam_from_camera.reset();
   EXPECT_EQ(mapper.AddFrame(lost).map_from_slam, prior.map_from_slam);
-  for (int i = 1; i < 10; ++i) mapper.AddFrame(PriorFrameAt(i, TruthAt(i)));
+  for (int i = 1; i < 10; ++i) mapper.AddFrame(PriorFrameAt(i, PriorTruthAt(i)));
   const auto online = mapper.CurrentPoses();
-  EXPECT_NEAR(BaseOf(*online[9]).x_m, TruthAt(9).x_m + 100.0, 1e-9);
+  EXPECT_NEAR(BaseOf(*online[9]).x_m, PriorTruthAt(9).x_m + 100.0, 1e-9);
   EXPECT_EQ(mapper.Finish().map_from_camera, online);
 }
 
@@ -279,7 +223,7 @@ TEST(PriorMap, AFrameWithoutAMapIsKeptToTheEnd) {
 TEST(PriorMap, LoopsOfItsFirstNewFrameAreRejected) {
   IncrementalMapper mapper({}, std::nullopt);
   mapper.StartFrom(FinishedRound());
-  Frame frame = PriorFrameAt(3, TruthAt(3));
+  Frame frame = PriorFrameAt(3, PriorTruthAt(3));
   frame.loops = {LoopClosure{3, 1, 3, {}}, LoopClosure{3, 2, 3, {}}};
   const FrameReport report = mapper.AddFrame(frame);
   EXPECT_EQ(report.loops_accepted, 0);
@@ -294,8 +238,8 @@ TEST(PriorMap, DoesNotTellHowSlamErrs) {
     for (int i = 0; i < 150; ++i) {
       MappedFrame frame;
       frame.frame = is_prior && i < 140 ? i - kPriorRound : i;
-      frame.map_from_base = TruthAt(i);
-      if (i > 0) frame.slam_motion = Between(TruthAt(i - 1), TruthAt(i));
+      frame.map_from_base = PriorTruthAt(i);
+      if (i > 0) frame.slam_motion = Between(PriorTruthAt(i - 1), PriorTruthAt(i));
       frame.scan = frame.obstacles = ScanArchive().Keep(PriorScanAt(i, 1));
       map.Insert(std::make_shared<const Scan>(*frame.scan), frame.map_from_base,
                  Eigen::Matrix3d::Zero());
@@ -312,7 +256,7 @@ TEST(PriorMap, SlamsCorrectionsAfterALossMoveWhatWasSeenSince) {
   PriorMap prior = FinishedRound();
   prior.frames.resize(120);
   prior.map_from_slam = {};
-  const auto truth_at = [](int i) { return TruthAt(i < kBack ? i : i + kAhead - kBack); };
+  const auto truth_at = [](int i) { return PriorTruthAt(i < kBack ? i : i + kAhead - kBack); };
   IncrementalMapper mapper({}, std::nullopt);
   mapper.StartFrom(std::move(prior));
   Pose2 last;
@@ -327,7 +271,7 @@ TEST(PriorMap, SlamsCorrectionsAfterALossMoveWhatWasSeenSince) {
         ScanOf(FurnishedRoom(), truth_at(i), kPriorLaser, 2, static_cast<std::uint32_t>(i)));
     last = BaseOf(*mapper.AddFrame(frame).map_from_camera);
   }
-  EXPECT_LT(PoseErrorM(last, truth_at(kFrames - 1)), 0.1);
+  EXPECT_LT(PriorErrorM(last, truth_at(kFrames - 1)), 0.1);
 }
 
 TEST(PriorMap, IsMadeOfAMapperThatStillRuns) {
@@ -359,7 +303,7 @@ TEST(PriorMap, IsMadeOfAMapperThatStillRuns) {
   IncrementalMapper second(MapperOptions{}, std::nullopt);
   second.StartFrom(prior);
   EXPECT_EQ(StatesOf(second.CurrentMap()), StatesOf(mapper.CurrentMap()));
-  EXPECT_LT(PoseErrorM(BaseOf(*mapper.Finish().map_from_camera[0]), TruthAt(0)), 0.015);
+  EXPECT_LT(PriorErrorM(BaseOf(*mapper.Finish().map_from_camera[0]), PriorTruthAt(0)), 0.015);
 }
 
 }  // namespace

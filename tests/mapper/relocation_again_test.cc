@@ -14,6 +14,9 @@ namespace {
 class KnownShare final : public ReferenceMap {
  public:
   explicit KnownShare(double share) : share_(share) {}
+  std::unique_ptr<ReferenceMap> Clone() const override {
+    return std::make_unique<KnownShare>(*this);
+  }
   MatchResult Match(const std::shared_ptr<const Scan>&, const Prediction&) override { return {}; }
   std::span<const MapPart> MatchedParts() const override { return {}; }
   void Insert(const std::shared_ptr<const Scan>&, const Pose2&, const Eigen::Matrix3d&) override {}

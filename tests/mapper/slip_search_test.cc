@@ -101,6 +101,7 @@ class FakeMap : public ReferenceMap {
     match_.map_from_base = found;
   }
 
+  std::unique_ptr<ReferenceMap> Clone() const override { return std::make_unique<FakeMap>(*this); }
   MatchResult& match() { return match_; }
   MatchResult Match(const std::shared_ptr<const Scan>&, const Prediction&) override {
     return match_;
