@@ -53,9 +53,15 @@ FrameReport IncrementalMapper::AddFrame(const Frame& frame) {
   return report;
 }
 
-// Without a pose that is held; one that repeats as odometry is slower than the scans is moved on.
+// Without a pose that is held, or a scan that is frozen; a pose that repeats as odometry is slower
+// than the scans is moved on.
 Frame IncrementalMapper::State::Believed(const Frame& frame) {
   Frame believed = frame;
+  if (frozen.IsFrozen(frame)) {
+    believed.scan.reset();
+    believed.matched_scan.reset();
+    believed.stand.reset();
+  }
   if (!reference) return believed;
   if (held.IsHeld(frame)) {
     believed.slam_from_camera.reset();

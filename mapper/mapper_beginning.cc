@@ -31,6 +31,7 @@ void IncrementalMapper::State::GoThroughAgain(const Frame& newest,
   again.moves.Append(MovesTo(again));
   // These do not depend on poses in the map.
   again.held = std::move(held);
+  again.frozen = std::move(frozen);
   again.scanner = std::move(scanner);
   again.moving = std::move(moving);
   again.moving.RenameEpoch(again.history.newest().epoch);  // slips may differ this time

@@ -17,6 +17,7 @@
 #include "mapper/mapped_frames.h"
 #include "mapper/reference_factory.h"
 #include "mapper/scan/frame_scans.h"
+#include "mapper/scan/frozen_watch.h"
 #include "mapper/scan/held_watch.h"
 #include "mapper/scan/moving_objects.h"
 #include "mapper/slip_search.h"
@@ -34,6 +35,7 @@ struct IncrementalMapper::State {
   GainOracle oracle;
   MatchOracle match_oracle;
   HeldWatch held;
+  FrozenWatch frozen;
   std::vector<int> moved_on_frames;  // Frame::index of those whose pose was moved on
   FrameScanner scanner;
   MovingObjects moving;

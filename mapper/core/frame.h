@@ -40,6 +40,8 @@ struct Frame {
   int index = 0;
   double stamp_s = 0.0;  // seconds from any origin; only differences matter
   std::shared_ptr<const DepthImage> depth;
+  // A scan that repeats the last one exactly counts as none once the poses show that the sensor
+  // moved (mapper/scan/frozen_watch.h): a driver that hangs gives its last scan again.
   std::shared_ptr<const Scan> scan;
   // With `scan` only: the scan to match, if different from `scan` (mapper/scan/frame_scans.h).
   std::shared_ptr<const Scan> matched_scan;

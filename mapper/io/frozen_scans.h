@@ -19,10 +19,8 @@ class FrozenScans {
   void Add(double stamp_s, const Pose2& odom_from_laser, const std::vector<double>& range_m,
            const std::function<Scan()>& scan);
 
-  // For each scan added, whether it repeats its predecessor exactly although, by the poses, the
-  // laser turned by more than 2 degrees or moved by more than 5 cm plus as much per second, more
-  // than odometry drifts while the robot stands. In addition the motion must change the ranges: in
-  // a bare corridor scans without noise may be equal.
+  // For each scan added, whether it repeats its predecessor exactly although, by the poses, it
+  // MustDiffer() (mapper/core/frozen_scan.h), or a later repetition must.
   const std::vector<bool>& frozen() const { return frozen_; }
   int count() const { return static_cast<int>(std::count(frozen_.begin(), frozen_.end(), true)); }
 

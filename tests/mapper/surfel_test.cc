@@ -313,7 +313,8 @@ TEST(SurfelMapping, AMappedFramesMatchIsInAxesOfTheMatch) {
     frame.index = i;
     frame.stamp_s = i / 30.0;
     frame.slam_from_camera = CameraOf({0.0, 0.0, 0.05 * i}, 1.0);
-    frame.scan = std::make_shared<Scan>(ScanOf(wall, {}, {}));
+    // Not the same scan again, which would be a hung driver's.
+    frame.scan = std::make_shared<Scan>(ScanOf(wall, {1e-4 * i, 0.0, 0.0}, {}));
     report = mapper.AddFrame(frame);
   }
   const auto along = [](const Eigen::Matrix3d& information) {
