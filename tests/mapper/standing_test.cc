@@ -60,6 +60,21 @@ TEST(Standing, WhatIsSeenToMoveMoves) {
             10);
 }
 
+// People who walk away draw single matches along; who is carried is seen elsewhere all the time.
+TEST(Standing, WhatIsBrieflySeenElsewhereStandsIfSlamMovedBefore) {
+  const auto moving_after = [](bool moved, int frames_elsewhere) {
+    Standing standing;
+    standing.Add({moved ? 1.0 : 0.0, 0.0, 0.0}, Pose2{});
+    for (int i = 0; i < 20; ++i) standing.Add({}, Pose2{});
+    for (int i = 0; i < frames_elsewhere; ++i) standing.Add({}, Pose2{0.1, 0.0, 0.0});
+    standing.Add({}, Pose2{});
+    return !standing.After({});
+  };
+  EXPECT_FALSE(moving_after(true, 4));
+  EXPECT_TRUE(moving_after(true, 5));
+  EXPECT_TRUE(moving_after(false, 1));
+}
+
 MatchResult MatchAt(const Pose2& pose) {
   MatchResult match;
   match.found = true;
