@@ -13,9 +13,31 @@ constexpr int kGridColumns = 40, kGridRows = 30;
 // Bearings of the same beam in two scans differ by rounding only.
 constexpr float kSameBearingRad = 1e-4F;
 
+// A view that changed by less than this, and noise, for so long is that of a sensor that stands.
+constexpr double kStillM = 0.01;
+constexpr double kStandsS = 1.0;
+// A share of what is seen that is farther than before was uncovered. Chosen.
+constexpr double kUncoveredShare = 0.15;
+
 bool IsThere(float z_m) { return std::isfinite(z_m) && z_m > 0.0F; }
 
 }  // namespace
+
+void StillView::Begin(double stamp_s) {
+  *this = {};
+  since_s_ = stamp_s;
+}
+
+void StillView::Add(double stamp_s, const std::vector<double>& since_first_m, double since_last_m,
+                    double moved_m) {
+  noise_m_ = std::max(noise_m_, since_last_m);
+  still_ = still_ && MedianChangeM(since_first_m) < kStillM + noise_m_;
+  stood_ = stood_ || (still_ && stamp_s - since_s_ >= kStandsS);
+  const auto farther = std::count_if(since_first_m.begin(), since_first_m.end(),
+                                     [&](double by_m) { return by_m > moved_m; });
+  uncovered_ = uncovered_ || static_cast<double>(farther) >
+                                 kUncoveredShare * static_cast<double>(since_first_m.size());
+}
 
 void ViewSample::Take(const DepthImage& depth) {
   readings_.clear();
@@ -47,9 +69,9 @@ void ViewSample::Take(const Scan& scan) {
   }
 }
 
-double ViewSample::ChangeFromM(const ViewSample& other) const {
-  if (width_px_ != other.width_px_ || height_px_ != other.height_px_) return 0.0;
-  std::vector<double> changes_m;
+std::vector<double> ViewSample::DifferencesM(const ViewSample& other) const {
+  std::vector<double> differences_m;
+  if (width_px_ != other.width_px_ || height_px_ != other.height_px_) return differences_m;
   auto a = readings_.begin();
   auto b = other.readings_.begin();
   while (a != readings_.end() && b != other.readings_.end()) {
@@ -59,13 +81,19 @@ double ViewSample::ChangeFromM(const ViewSample& other) const {
       ++b;
     } else {
       if (a->distance_m > 0.0F && b->distance_m > 0.0F) {
-        changes_m.push_back(std::abs(a->distance_m - b->distance_m));
+        differences_m.push_back(a->distance_m - b->distance_m);
       }
       ++a;
       ++b;
     }
   }
-  return changes_m.size() < kFewReadings ? 0.0 : UpperMedian(std::move(changes_m));
+  return differences_m;
+}
+
+double MedianChangeM(std::vector<double> differences_m) {
+  if (differences_m.size() < kFewReadings) return 0.0;
+  for (double& difference_m : differences_m) difference_m = std::abs(difference_m);
+  return UpperMedian(std::move(differences_m));
 }
 
 }  // namespace depthgrid

@@ -17,6 +17,29 @@ constexpr double kBegunShare = 0.5;
 // Fewer readings in common tell nothing.
 constexpr std::size_t kFewReadings = 20;
 
+// The median of such differences without their signs; 0 if they are few.
+double MedianChangeM(std::vector<double> differences_m);
+// Tells whoever comes before a sensor that stands from its motion, where it gives one pose again
+// and again. They only hide what it saw; motion uncovers something as well.
+class StillView {
+ public:
+  // The first frame with the pose.
+  void Begin(double stamp_s);
+  // The next one: by how much what it sees is farther than in the first (DifferencesM()), the
+  // median change from the one before, and what counts as motion.
+  void Add(double stamp_s, const std::vector<double>& since_first_m, double since_last_m,
+           double moved_m);
+  // Whether nothing but noise changed in the first second, and nothing was uncovered since.
+  bool stands() const { return stood_ && !uncovered_; }
+
+ private:
+  double since_s_ = 0.0;
+  double noise_m_ = 0.0;  // the largest change from one frame to the next
+  bool still_ = true;
+  bool stood_ = false;
+  bool uncovered_ = false;
+};
+
 // Distances that a sensor sees at fixed places of its view.
 class ViewSample {
  public:
@@ -26,8 +49,10 @@ class ViewSample {
   void Clear() { readings_.clear(); }
   bool empty() const { return readings_.empty(); }
 
-  // The median difference of the distances that both have; 0 if they are few.
-  double ChangeFromM(const ViewSample& other) const;
+  // How much farther than in the other this is, of the distances that both have.
+  std::vector<double> DifferencesM(const ViewSample& other) const;
+  // Their median, without sign; 0 if they are few.
+  double ChangeFromM(const ViewSample& other) const { return MedianChangeM(DifferencesM(other)); }
 
  private:
   struct Reading {

@@ -6,19 +6,18 @@
 
 #include "mapper/core/level.h"
 #include "mapper/core/median.h"
-#include "mapper/core/view_change.h"
 #include "mapper/io/pose_runs.h"
 
 namespace depthgrid {
 namespace {
 
-// The median difference of the readings that both have; 0 if they are few.
-double DifferenceM(const std::vector<double>& a_m, const std::vector<double>& b_m) {
+// How much farther the readings that both have are in a than in b.
+std::vector<double> DifferencesM(const std::vector<double>& a_m, const std::vector<double>& b_m) {
   std::vector<double> differences_m;
   for (std::size_t i = 0; i < std::min(a_m.size(), b_m.size()); ++i) {
-    if (a_m[i] > 0.0 && b_m[i] > 0.0) differences_m.push_back(std::abs(a_m[i] - b_m[i]));
+    if (a_m[i] > 0.0 && b_m[i] > 0.0) differences_m.push_back(a_m[i] - b_m[i]);
   }
-  return differences_m.size() < kFewReadings ? 0.0 : UpperMedian(std::move(differences_m));
+  return differences_m;
 }
 
 // Whether a step is too small for the readings' change, as of an encoder that was unplugged and
@@ -51,12 +50,15 @@ void HeldPoses::Add(const OdometryPose& pose, std::vector<double> range_m, doubl
     moves_ = !is_first;
     first_m_ = range_m;
     moved_from_ = scan + 1;
+    still_.Begin(pose.stamp_s);
   } else {
-    const double since_first_m = DifferenceM(first_m_, range_m);
-    const double since_last_m = DifferenceM(last_m_, range_m);
+    const std::vector<double> since_first = DifferencesM(range_m, first_m_);
+    const double since_first_m = MedianChangeM(since_first);
+    const double since_last_m = MedianChangeM(DifferencesM(range_m, last_m_));
     const double moved_m = kViewMovedM + kTimesNoise * since_last_m;
+    still_.Add(pose.stamp_s, since_first, since_last_m, moved_m);
     if (since_first_m < kBegunShare * moved_m) moved_from_ = scan + 1;
-    if (moves_ && since_first_m > moved_m) {
+    if (moves_ && since_first_m > moved_m && !still_.stands()) {
       for (std::size_t i = moved_from_; i <= scan; ++i) held_[i] = true;
     }
   }
@@ -71,7 +73,7 @@ bool HeldPoses::TellsTheWay(const OdometryPose& pose, const std::vector<double>&
   constexpr double kMostS = 1.0;
   return pose.stamp_s - poses_[moved_from_ - 1].stamp_s <= kMostS &&
          !IsTooSmall(Between(poses_.back().odom_from_laser, pose.odom_from_laser),
-                     DifferenceM(first_m_, range_m), range_m);
+                     MedianChangeM(DifferencesM(range_m, first_m_)), range_m);
 }
 
 // Poses after an untold way are of another epoch, unless all before was only read too often.

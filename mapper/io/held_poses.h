@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/core/pose2.h"
+#include "mapper/core/view_change.h"
 #include "mapper/io/held_gaps.h"
 
 namespace depthgrid {
@@ -28,8 +29,9 @@ class HeldPoses {
   void Mend();
 
   // For each scan added, whether its pose equals that of the scan before bit for bit while half of
-  // the readings changed. Somebody who fills the view of a standing robot has the same effect.
-  // False until the log's poses have moved, as it may have no odometry.
+  // the readings changed. False until the log's poses have moved, as it may have no
+  // odometry, and where the robot stood for a second and what changed is nearer only (StillView):
+  // people who come. Who comes within that second has the same effect as motion.
   const std::vector<bool>& held() const { return held_; }
 
   // Since Mend(): of the scans held() or read while the odometry had no new pose (FindRepeated).
@@ -50,6 +52,7 @@ class HeldPoses {
   bool moves_ = false;           // a different pose occurred before
   std::vector<double> first_m_;  // the readings at the first scan with this pose
   std::vector<double> last_m_;
+  StillView still_;
   std::size_t moved_from_ = 0;  // scans from this one to the last show motion
   std::vector<bool> held_;
   // Scans held from `first` on whose next pose, at `end`, does not tell what was driven.

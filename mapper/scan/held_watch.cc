@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace depthgrid {
 namespace {
@@ -31,12 +32,15 @@ bool HeldWatch::IsHeld(const Frame& frame) {
   ++run_;
   if (now_.empty()) return held_;
   if (first_.empty()) first_ = now_;
-  const double since_first_m = now_.ChangeFromM(first_);
-  largest_step_m_ = std::max(largest_step_m_, now_.ChangeFromM(last_));
+  const std::vector<double> since_first = now_.DifferencesM(first_);
+  const double since_first_m = MedianChangeM(since_first);
+  const double since_last_m = now_.ChangeFromM(last_);
+  largest_step_m_ = std::max(largest_step_m_, since_last_m);
   const double moved_m = kMovesM + kTimesStep * largest_step_m_;
+  still_.Add(now_s_, since_first, since_last_m, moved_m);
   std::swap(last_, now_);
   if (since_first_m < kBegunShare * moved_m) held_ = false;
-  if (moves_ && run_ > 2 * UsualRun() && since_first_m > moved_m) held_ = true;
+  if (moves_ && run_ > 2 * UsualRun() && since_first_m > moved_m && !still_.stands()) held_ = true;
   return held_;
 }
 
@@ -57,6 +61,7 @@ void HeldWatch::Begin(const Frame& frame) {
   first_frame_ = frame.index;
   run_ = 1;
   held_ = false;
+  still_.Begin(frame.stamp_s);
   largest_step_m_ = 0.0;
   last_ = now_;
   std::swap(first_, now_);

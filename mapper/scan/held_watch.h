@@ -19,8 +19,9 @@ class HeldWatch {
   // usual, and what the frame shows has changed since the first of them by more than 2 cm and 1.5
   // times the largest change from one of them to the next, which is noise and motion; until it has
   // changed by less than half of that again. Never before the first pose that differs, as there may
-  // be no odometry. Somebody who fills the view of a standing robot has the same effect. Call once
-  // per frame, in order of time.
+  // be no odometry, nor where the sensor stood for a second since that pose came and what changed
+  // is nearer only (StillView): people who come. Who comes within that second looks like motion,
+  // and a drive straight at a wall like people. Call once per frame, in order of time.
   bool IsHeld(const Frame& frame);
   // After IsHeld(): the last frame's pose if it repeats the one before because poses come at half
   // the frames' rate or less: moved on by the motion between the last two poses, for as long as
@@ -43,6 +44,7 @@ class HeldWatch {
   int first_frame_ = -1;
   std::size_t run_ = 0;  // frames with this pose
   bool held_ = false;
+  StillView still_;
   double largest_step_m_ = 0.0;  // ViewSample::ChangeFromM() between successive ones of these
   bool moves_ = false;           // a different pose occurred before
   // How many frames had the last poses: more than one where poses are read more often than made.

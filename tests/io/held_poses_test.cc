@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "mapper/core/rng.h"
 #include "mapper/io/carmen_log.h"
@@ -66,6 +68,21 @@ TEST(HeldPoses, WhatStoodIsNotHeld) {
   const HeldPoses poses = Drive(0, 0.01, true);
   for (int i = 0; i <= 21; ++i) EXPECT_FALSE(poses.held()[static_cast<std::size_t>(i)]) << i;
   EXPECT_GE(CountHeldScans(poses), 35);
+}
+
+// Stands among people who come after two seconds and hide most of the room.
+TEST(HeldPoses, PeopleDoNotMoveARobotThatStood) {
+  RandomStream random(7, RandomStage::kTest);
+  HeldPoses poses;
+  poses.Add({-1.0, {0.5, 0.0, 0.0}}, RoomReadings({0.5, 0.0, 0.0}, 0.01, random), 0.1, 80.0);
+  for (int i = 0; i < 60; ++i) {
+    std::vector<double> range_m = RoomReadings({}, 0.01, random);
+    for (std::size_t k = 0; i > 20 && k < range_m.size(); ++k) {
+      if (k % 4 != 0) range_m[k] *= 0.5;
+    }
+    poses.Add({0.1 * i, {}}, std::move(range_m), 0.1, 80.0);
+  }
+  EXPECT_EQ(CountHeldScans(poses), 0);
 }
 
 // A log without odometry.

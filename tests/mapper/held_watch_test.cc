@@ -67,6 +67,31 @@ TEST(HeldWatch, BelievesARobotThatStands) {
   EXPECT_EQ(CountOf(HeldAmong([](int i) { return i < 20 ? i : 20; }, kWatchedFrames)), 0);
 }
 
+// The robot stops at frame 20 before a wall. From frame 45 on the left part of its image, so many
+// columns of 64, is nearer by so much in each frame.
+int HeldAfterStanding(int columns, double nearer_m) {
+  HeldWatch watch;
+  std::vector<bool> held;
+  for (int i = 0; i < kWatchedFrames; ++i) {
+    Frame frame = TowardsWall(i, std::min(i, 20), kWatchedFrames);
+    auto image = std::make_shared<DepthImage>(*frame.depth);
+    for (int v = 0; v < 48 && i >= 45; ++v) {
+      for (int u = 0; u < columns; ++u) {
+        image->z_m[static_cast<std::size_t>(64 * v + u)] -= static_cast<float>(nearer_m * (i - 44));
+      }
+    }
+    frame.depth = image;
+    held.push_back(watch.IsHeld(frame));
+  }
+  return CountOf(held);
+}
+
+// Who comes before it only hides what it saw; motion uncovers something.
+TEST(HeldWatch, BelievesARobotThatStoodWhenSomebodyFillsItsView) {
+  EXPECT_EQ(HeldAfterStanding(50, 0.1), 0);
+  EXPECT_GT(HeldAfterStanding(50, -0.1), 20);
+}
+
 // As of a log without odometry.
 TEST(HeldWatch, BelievesPosesThatNeverMoved) {
   EXPECT_EQ(CountOf(HeldAmong([](int) { return 0; })), 0);
