@@ -21,7 +21,9 @@ std::string SizeText(const TriangleMesh& mesh) {
   return fmt::format("{:.1f} x {:.1f} x {:.1f} m", size_m.x(), size_m.y(), size_m.z());
 }
 
-void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>& rows) {
+using Rows = std::vector<std::vector<std::string>>;
+
+void AddSceneRows(const std::string& name, Rows& rows) {
   const Scene scene = LoadNamedScene(name);
   std::string first_of_scene = name;
   std::string size = SizeText(scene.mesh);
@@ -36,6 +38,39 @@ void AddSceneRows(const std::string& name, std::vector<std::vector<std::string>>
   if (scene.trajectories.empty()) rows.push_back({name, size, triangles, movers, "none", "", ""});
 }
 
+Rows SceneRows() {
+  Rows rows = {{"scene", "size", "triangles", "movers", "trajectory", "path", "frames"}};
+  for (const std::string& name : ShippedNames(ShippedKind::kScene)) AddSceneRows(name, rows);
+  return rows;
+}
+
+std::vector<std::string> ExperimentRow(const std::string& name) {
+  const Config config = Config::FromFile(ResolveName(name, ShippedKind::kExperiment));
+  if (IsStudy(config)) {
+    return {name, Counted(ReadStudyOutline(config).cases.size(), "case"), "", ""};
+  }
+  const ExperimentOptions options = ReadExperiment(config, ShippedFolder(ShippedKind::kExperiment));
+  return {name, options.scene, options.trajectory.empty() ? "first" : options.trajectory,
+          options.frames > 0 ? fmt::format("{}", options.frames) : "whole path"};
+}
+
+Rows ExperimentRows() {
+  Rows rows = {{"experiment", "scene", "trajectory", "frames"}};
+  for (const std::string& name : ShippedNames(ShippedKind::kExperiment)) {
+    rows.push_back(ExperimentRow(name));
+  }
+  return rows;
+}
+
+Rows SweepRows() {
+  Rows rows = {{"sweep", "runs", "of"}};
+  for (const std::string& name : ShippedNames(ShippedKind::kSweep)) {
+    const SweepPlan plan = ReadSweepPlan(ResolveName(name, ShippedKind::kSweep), {});
+    rows.push_back({name, fmt::format("{}", plan.runs.size()), plan.size_text});
+  }
+  return rows;
+}
+
 }  // namespace
 
 void ListScenes(const ScenesArguments& arguments) {
@@ -44,30 +79,8 @@ void ListScenes(const ScenesArguments& arguments) {
   }
   if (!arguments.scene.empty()) return ShowScene(arguments);
   if (!arguments.plan.empty()) throw InputError("--plan", "draws one scene, which must be given");
-  std::vector<std::vector<std::string>> scenes = {
-      {"scene", "size", "triangles", "movers", "trajectory", "path", "frames"}};
-  for (const std::string& name : ShippedNames(ShippedKind::kScene)) AddSceneRows(name, scenes);
-  std::vector<std::vector<std::string>> experiments = {
-      {"experiment", "scene", "trajectory", "frames"}};
-  for (const std::string& name : ShippedNames(ShippedKind::kExperiment)) {
-    const std::string path = ResolveName(name, ShippedKind::kExperiment);
-    const Config config = Config::FromFile(path);
-    if (IsStudy(config)) {
-      const std::size_t cases = ReadStudyOutline(config).cases.size();
-      experiments.push_back({name, Counted(cases, "case"), "", ""});
-      continue;
-    }
-    const ExperimentOptions options =
-        ReadExperiment(config, ShippedFolder(ShippedKind::kExperiment));
-    experiments.push_back({name, options.scene,
-                           options.trajectory.empty() ? "first" : options.trajectory,
-                           options.frames > 0 ? fmt::format("{}", options.frames) : "whole path"});
-  }
-  std::vector<std::vector<std::string>> sweeps = {{"sweep", "runs", "of"}};
-  for (const std::string& name : ShippedNames(ShippedKind::kSweep)) {
-    const SweepPlan plan = ReadSweepPlan(ResolveName(name, ShippedKind::kSweep), {});
-    sweeps.push_back({name, fmt::format("{}", plan.runs.size()), plan.size_text});
-  }
+  // All are read before the first is printed: a broken file then gives an error alone.
+  const Rows scenes = SceneRows(), experiments = ExperimentRows(), sweeps = SweepRows();
   fmt::print("{}\n{}\n{}", Table(scenes), Table(experiments), Table(sweeps));
 }
 
