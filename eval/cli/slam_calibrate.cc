@@ -20,9 +20,7 @@ IdleSettingList OfNoUse() {
   return idle;
 }
 
-}  // namespace
-
-void SlamCalibrate(const SlamCalibrateArguments& arguments) {
+void CalibrateNamed(const SlamCalibrateArguments& arguments) {
   for (const char* key : {"seed", "slam_seed"}) {
     RequireNotSet(arguments.common.set, key, "give --first-seed N");
   }
@@ -40,9 +38,9 @@ void SlamCalibrate(const SlamCalibrateArguments& arguments) {
   const DriftCalibration found =
       CalibrateDrift(world.trajectory, options.slam, arguments.target_m, seeds);
   if (!found.reached && found.mean_error_m == 0.0) {
-    throw InputError("", fmt::format("slam.profile is {}, whose poses have no error to scale: "
-                                     "choose another with --set slam.profile=NAME",
-                                     ValueOf(options, "slam.profile")));
+    throw SettingError("slam.profile", fmt::format("is {}, whose poses have no error to scale: "
+                                                   "choose another with --set slam.profile=NAME",
+                                                   ValueOf(options, "slam.profile")));
   }
   if (!found.reached) {
     throw InputError("--target",
@@ -54,6 +52,13 @@ void SlamCalibrate(const SlamCalibrateArguments& arguments) {
       "slam: {{drift_scale: {:.4g}}}\n",
       found.mean_error_m, Counted(world.trajectory.size(), "frame"), Counted(seeds.count, "seed"),
       found.drift_scale);
+}
+
+}  // namespace
+
+void SlamCalibrate(const SlamCalibrateArguments& arguments) {
+  NamingPlaces(PlacesOf(arguments.experiment, arguments.common.set),
+               [&] { CalibrateNamed(arguments); });
 }
 
 }  // namespace depthgrid::cli

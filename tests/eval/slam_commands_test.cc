@@ -261,10 +261,17 @@ TEST_F(SlamCommands, CalibrateRefusesBadInput) {
   }
   ExpectRefusal("slam-calibrate ./small.yaml --target 0.1 --set slam.drift_scale=3",
                 {"--set slam.drift_scale=3: is what this command finds"});
-  // Nothing to scale.
+  // Nothing to scale; named is what chose the profile, if anything did.
+  const std::string nothing =
+      "is ground_truth, whose poses have no error to scale: choose another with --set "
+      "slam.profile=NAME\n";
   ExpectRefusal("slam-calibrate ./small.yaml --set slam.profile=ground_truth --target 0.1",
-                {"depthgrid: slam.profile is ground_truth, whose poses have no error to scale: "
-                 "choose another with --set slam.profile=NAME\n"});
+                {"depthgrid: --set slam.profile=ground_truth: slam.profile " + nothing});
+  Write("true.yaml", "scene: ./room.yaml\nframes: 6\nslam:\n  profile: ground_truth\n");
+  ExpectRefusal("slam-calibrate ./true.yaml --target 0.1",
+                {"true.yaml:4: slam.profile " + nothing});
+  Write("bare.yaml", "scene: ./room.yaml\nframes: 6\n");
+  ExpectRefusal("slam-calibrate ./bare.yaml --target 0.1", {"depthgrid: slam.profile: " + nothing});
 }
 
 }  // namespace
