@@ -31,13 +31,14 @@ class PlyParser {
     at_ = header.bytes;
     encoding_ = header.encoding;
     for (const PlyElement& element : header.elements) {
+      element_ = &element;
       RequireRoomFor(element);
       if (element.name == "vertex") {
         ReadVertices(element);
       } else if (element.name == "face") {
         ReadFaces(element);
       } else {
-        for (std::size_t i = 0; i < element.count; ++i) Skip(element);
+        for (index_ = 0; index_ < element.count; ++index_) Skip(element);
       }
     }
     CutFaces();
@@ -45,7 +46,26 @@ class PlyParser {
   }
 
  private:
-  [[noreturn]] void Fail(const std::string& message) const { throw InputError(path_, message); }
+  // About the line that announces an element.
+  [[noreturn]] void FailElement(const PlyElement& element, const std::string& rule) const {
+    throw InputError(fmt::format("{}:{}", path_, element.line),
+                     fmt::format("element '{}' {}", element.name, rule));
+  }
+
+  // About what is being read; elements are counted from 0, as the indices of faces do. Only text
+  // has lines.
+  [[noreturn]] void FailHere(const std::string& message) const {
+    std::string place = path_;
+    if (encoding_ == PlyEncoding::kAscii) {
+      const auto end = text_.begin() + static_cast<std::ptrdiff_t>(at_);
+      place += fmt::format(":{}", 1 + std::count(text_.begin(), end, '\n'));
+    }
+    throw InputError(place, fmt::format("{} {} {}", element_->name, index_, message));
+  }
+
+  [[noreturn]] void FailFace(std::size_t face, const std::string& message) const {
+    throw InputError(path_, fmt::format("face {} {}", face, message));
+  }
 
   // Prevents a wrong count in the header from allocating more memory than the file has data.
   void RequireRoomFor(const PlyElement& element) const {
@@ -55,12 +75,20 @@ class PlyParser {
       least_bytes += encoding_ == PlyEncoding::kAscii ? 1 : stored;
     }
     if (least_bytes == 0 && element.count > 0) {
-      Fail(fmt::format("its element '{}' has no properties", element.name));
+      FailElement(element, "has no properties, must have some");
     }
-    if (element.count > 0 && element.count > (text_.size() - at_) / least_bytes) FailCutOff();
+    const std::size_t left_bytes = text_.size() - at_;
+    if (element.count > 0 && element.count > left_bytes / least_bytes) {
+      FailElement(element, fmt::format("has {} entries of at least {} bytes each, must fit into "
+                                       "the {} bytes behind the header and what is before it",
+                                       element.count, least_bytes, left_bytes));
+    }
   }
 
-  [[noreturn]] void FailCutOff() const { Fail("ends before all that its header announces"); }
+  [[noreturn]] void FailCutOff() const {
+    throw InputError(path_, fmt::format("ends within {} {}, must have {} of them (line {})",
+                                        element_->name, index_, element_->count, element_->line));
+  }
 
   double Number(const PlyType& type) {
     return encoding_ == PlyEncoding::kAscii ? AsciiNumber() : BinaryNumber(type);
@@ -79,7 +107,7 @@ class PlyParser {
       std::size_t word_end = at_;
       while (word_end < text_.size() && !IsPlySpace(text_[word_end]) && word_end - at_ < 32)
         ++word_end;
-      Fail(fmt::format("'{}' is not a number", text_.substr(at_, word_end - at_)));
+      FailHere(fmt::format("has '{}', must be a number", text_.substr(at_, word_end - at_)));
     }
     at_ = static_cast<std::size_t>(stop - text_.data());
     return number;
@@ -118,7 +146,11 @@ class PlyParser {
 
   std::size_t ListLength(const PlyProperty& property) {
     const double length = Number(*property.count);
-    if (!(length >= 0.0) || length > static_cast<double>(text_.size())) FailCutOff();
+    if (!(length >= 0.0) || length > static_cast<double>(text_.size())) {
+      FailHere(
+          fmt::format("has {} values of '{}', must be from 0 to {}: the file has no more bytes",
+                      length, property.name, text_.size()));
+    }
     return static_cast<std::size_t>(length);
   }
 
@@ -135,10 +167,10 @@ class PlyParser {
     for (const char* name : {"x", "y", "z"}) {
       if (std::none_of(element.properties.begin(), element.properties.end(),
                        [&](const PlyProperty& p) { return p.name == name && !p.count; })) {
-        Fail(fmt::format("its vertices have no '{}'", name));
+        FailElement(element, fmt::format("has no property '{}', must have x, y and z", name));
       }
     }
-    for (std::size_t i = 0; i < element.count; ++i) {
+    for (index_ = 0; index_ < element.count; ++index_) {
       Eigen::Vector3d point = Eigen::Vector3d::Zero();
       for (const PlyProperty& property : element.properties) {
         const bool is_coordinate = !property.count && property.name.size() == 1 &&
@@ -150,12 +182,15 @@ class PlyParser {
         }
       }
       mesh_.AddVertex(point);
-      if (!mesh_.vertices.back().allFinite()) Fail(fmt::format("vertex {} is not finite", i));
+      if (!mesh_.vertices.back().allFinite()) {
+        FailHere(fmt::format("is ({:g}, {:g}, {:g}), must be finite in 32 bits", point.x(),
+                             point.y(), point.z()));
+      }
     }
   }
 
   void ReadFaces(const PlyElement& element) {
-    for (std::size_t i = 0; i < element.count; ++i) {
+    for (index_ = 0; index_ < element.count; ++index_) {
       for (const PlyProperty& property : element.properties) {
         const bool is_polygon = property.count && (property.name == "vertex_indices" ||
                                                    property.name == "vertex_index");
@@ -172,7 +207,8 @@ class PlyParser {
     const std::size_t corners = ListLength(property);
     triangles_ += std::max<std::size_t>(corners, 2) - 2;
     if (triangles_ > kMaxSceneTriangles) {
-      Fail(fmt::format("has more than {} triangles", kMaxSceneTriangles));
+      FailHere(
+          fmt::format("is one too many: must be at most {} triangles in all", kMaxSceneTriangles));
     }
     faces_.push_back(static_cast<std::uint32_t>(corners));
     for (std::size_t k = 0; k < corners; ++k) faces_.push_back(VertexIndex(Number(property.value)));
@@ -180,24 +216,26 @@ class PlyParser {
 
   std::uint32_t VertexIndex(double number) const {
     if (!(number >= 0.0) || number != std::floor(number) || number > 4294967295.0) {
-      Fail(fmt::format("a face uses vertex '{}'", number));
+      FailHere(fmt::format("uses vertex '{}', must be a whole number from 0", number));
     }
     return static_cast<std::uint32_t>(number);
   }
 
   // Called at the end, as faces may come before vertices.
   void CutFaces() {
-    for (std::size_t at = 0; at < faces_.size();) {
+    std::size_t face = 0;
+    for (std::size_t at = 0; at < faces_.size(); ++face) {
       const std::size_t corners = faces_[at];
-      CutFace(std::span(faces_).subspan(at + 1, corners));
+      CutFace(face, std::span(faces_).subspan(at + 1, corners));
       at += 1 + corners;
     }
   }
 
-  void CutFace(std::span<const std::uint32_t> face) {
+  void CutFace(std::size_t index, std::span<const std::uint32_t> face) {
     for (const std::uint32_t vertex : face) {
       if (vertex < mesh_.vertices.size()) continue;
-      Fail(fmt::format("a face uses vertex {} of {}", vertex, mesh_.vertices.size()));
+      FailFace(index, fmt::format("uses vertex {}, must be below their number, {}", vertex,
+                                  mesh_.vertices.size()));
     }
     if (face.size() < 3) return;
     if (face.size() == 3) return mesh_.AddTriangle(face[0], face[1], face[2]);
@@ -207,8 +245,8 @@ class PlyParser {
     }
     const auto triangles = TrianglesOfFace(corners);
     if (!triangles) {
-      Fail(fmt::format("a face that is not convex has {} corners, must have at most {}",
-                       face.size(), kMostConcaveCorners));
+      FailFace(index, fmt::format("is not convex and has {} corners, must have at most {}",
+                                  face.size(), kMostConcaveCorners));
     }
     for (const auto& [a, b, c] : *triangles) mesh_.AddTriangle(face[a], face[b], face[c]);
   }
@@ -217,6 +255,8 @@ class PlyParser {
   std::string text_;
   std::size_t at_ = 0;
   PlyEncoding encoding_ = PlyEncoding::kAscii;
+  const PlyElement* element_ = nullptr;  // being read, and which of its kind
+  std::size_t index_ = 0;
   std::vector<std::uint32_t> faces_;  // of each face the number of its corners, then their indices
   std::size_t triangles_ = 0;         // of all faces
   TriangleMesh mesh_;

@@ -6,6 +6,7 @@
 #include <charconv>
 
 #include "mapper/core/error.h"
+#include "mapper/io/config_text.h"
 
 namespace depthgrid {
 namespace {
@@ -50,11 +51,12 @@ class HeaderReader {
         header.encoding = EncodingNamed(words[1]);
         has_format = true;
       } else if (words[0] == "element" && words.size() == 3) {
-        header.elements.push_back({words[1], CountIn(words[2]), {}});
+        header.elements.push_back({words[1], CountIn(words[2]), {}, line_});
       } else if (words[0] == "property" && !header.elements.empty()) {
-        header.elements.back().properties.push_back(PropertyIn(words));
+        header.elements.back().properties.push_back(PropertyIn(words, line));
       } else {
-        FailHere("is not a PLY header line");
+        FailValue(line,
+                  "must be a format, comment, obj_info, element, property or end_header line");
       }
     }
     if (!has_format) FailAll("has no 'format' line");
@@ -72,36 +74,46 @@ class HeaderReader {
     return line;
   }
 
-  [[noreturn]] void FailHere(const std::string& message) const {
-    throw InputError(fmt::format("{}:{}", path_, line_), message);
+  [[noreturn]] void FailValue(std::string_view value, const std::string& rule) const {
+    while (!value.empty() && IsPlySpace(value.back())) value.remove_suffix(1);
+    throw InputError(fmt::format("{}:{}", path_, line_),
+                     fmt::format("'{}' {}", Shortened(std::string(value)), rule));
   }
 
   PlyEncoding EncodingNamed(const std::string& name) const {
     if (name == "ascii") return PlyEncoding::kAscii;
     if (name == "binary_little_endian") return PlyEncoding::kLittleEndian;
     if (name == "binary_big_endian") return PlyEncoding::kBigEndian;
-    FailHere("the format must be ascii, binary_little_endian or binary_big_endian");
+    FailValue(name, "is no format, must be ascii, binary_little_endian or binary_big_endian");
   }
 
   std::size_t CountIn(const std::string& word) const {
     std::size_t count = 0;
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), count);
     if (error != std::errc() || end != word.data() + word.size()) {
-      FailHere("the number of elements is not a whole number");
+      FailValue(word, "is no number of elements, must be a whole number");
     }
     return count;
   }
 
-  PlyProperty PropertyIn(const std::vector<std::string>& words) const {
+  PlyProperty PropertyIn(const std::vector<std::string>& words, std::string_view line) const {
     const bool is_list = words.size() == 5 && words[1] == "list";
-    if (!is_list && words.size() != 3) FailHere("is not a PLY header line");
+    if (!is_list && words.size() != 3) {
+      FailValue(line, "must be property TYPE NAME or property list TYPE TYPE NAME");
+    }
     PlyProperty property;
     property.name = words.back();
-    const auto value = TypeNamed(words[words.size() - 2]);
-    if (is_list) property.count = TypeNamed(words[2]);
-    if (!value || (is_list && !property.count)) FailHere("names an unknown number type");
-    property.value = *value;
+    if (is_list) property.count = TypeIn(words[2]);
+    property.value = TypeIn(words[words.size() - 2]);
     return property;
+  }
+
+  PlyType TypeIn(const std::string& word) const {
+    const auto type = TypeNamed(word);
+    if (!type) {
+      FailValue(word, "is no type of numbers, must be one such as float, double, uchar or int");
+    }
+    return *type;
   }
 
   [[noreturn]] void FailAll(const std::string& message) const { throw InputError(path_, message); }

@@ -27,6 +27,7 @@ struct PlyElement {
   std::string name;
   std::size_t count = 0;
   std::vector<PlyProperty> properties;
+  int line = 0;  // that announces it, from 1
 };
 
 struct PlyHeader {

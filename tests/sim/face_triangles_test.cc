@@ -135,7 +135,7 @@ TEST_F(PlyFaces, AreCutAsTheyLie) {
   EXPECT_NEAR(area(head + of_faces + of_vertices + end + face + vertices), 18.0, 1e-6);
   EXPECT_EQ(Short(RefusalOf(
                 [&] { area(head + of_faces + of_vertices + end + "6 4 5 0 1 2 6\n" + vertices); })),
-            "~/l.ply: a face uses vertex 6 of 6");
+            "~/l.ply: face 0 uses vertex 6, must be below their number, 6");
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 
 #include "mapper/core/error.h"
 #include "sim/scene/scene.h"
-#include "tests/io/temporary_folder.h"
 #include "tests/refusal.h"
+#include "tests/sim/mesh_files.h"
 #include "tests/sim/test_meshes.h"
 
 namespace depthgrid {
@@ -22,10 +22,6 @@ using ::testing::StartsWith;
 constexpr const char* kObj =
     "mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
     "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-constexpr const char* kPly =
-    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
-    "property float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n"
-    "0 0 0\n1 0 0\n0 2 0\n0 0 3\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";
 constexpr const char* kStl =
     "solid t\n"
     "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\nvertex 0 2 0\nvertex 1 0 0\nendloop\nendfacet\n"
@@ -68,13 +64,6 @@ std::string Base64(const std::string& bytes) {
   return text;
 }
 
-template <typename T>
-void Put(std::string& bytes, T value) {
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));
-  bytes.append(raw, sizeof(T));
-}
-
 std::string TetrahedronBytes() {
   std::string bytes;
   for (const float f : {0.F, 0.F, 0.F, 1.F, 0.F, 0.F, 0.F, 2.F, 0.F, 0.F, 0.F, 3.F}) Put(bytes, f);
@@ -113,58 +102,6 @@ std::string Glb() {
   glb += std::string("BIN\0", 4) + data;
   return glb;
 }
-
-// The same in binary, faces before vertices, with properties nobody asked for.
-std::string BinaryPly(bool big_endian) {
-  std::string ply = std::string("ply\nformat binary_") + (big_endian ? "big" : "little") +
-                    "_endian 1.0\ncomment made by a test\nelement face 4\n"
-                    "property list uint8 uint16 vertex_index\nproperty uchar red\n"
-                    "element edge 1\nproperty short v\nelement vertex 4\nproperty double z\n"
-                    "property float x\nproperty list uchar int tags\nproperty float y\n"
-                    "end_header\n";
-  const auto put = [&](auto value) {
-    std::string bytes;
-    Put(bytes, value);
-    big_endian ? ply.append(bytes.rbegin(), bytes.rend()) : ply.append(bytes);
-  };
-  for (const auto& face : {std::array{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}) {
-    put(std::uint8_t{3});
-    for (const int corner : face) put(static_cast<std::uint16_t>(corner));
-    put(std::uint8_t{255});
-  }
-  put(std::int16_t{-5});
-  for (const auto& v :
-       {std::array{0.F, 0.F, 0.F}, {1.F, 0.F, 0.F}, {0.F, 2.F, 0.F}, {0.F, 0.F, 3.F}}) {
-    put(static_cast<double>(v[2]));
-    put(v[0]);
-    put(std::uint8_t{2});
-    put(std::int32_t{-1});
-    put(std::int32_t{7});
-    put(v[1]);
-  }
-  return ply;
-}
-
-class MeshFiles : public TemporaryFolderTest {
- protected:
-  // Returns the path.
-  std::string Write(const std::string& name, const std::string& text) {
-    TemporaryFolderTest::Write(name, text);
-    return Path(name);
-  }
-  std::string ErrorOf(const std::string& name, const std::string& text) {
-    const std::string path = Write(name, text);
-    try {
-      ReadMeshFile(path);
-    } catch (const InputError& error) {
-      const std::string what = error.what();
-      EXPECT_EQ(what.find('\n'), std::string::npos);
-      EXPECT_THAT(what, StartsWith(path + ":"));
-      return what.substr(path.size() + (what[path.size() + 1] == ' ' ? 2 : 1));
-    }
-    return "no error";
-  }
-};
 
 void ExpectTetrahedron(const TriangleMesh& mesh, const Eigen::Vector3f& low,
                        const Eigen::Vector3f& high) {
@@ -241,28 +178,6 @@ TEST_F(MeshFiles, ErrorsAreOneLineNamingTheFile) {
   EXPECT_EQ(broken, 9);
   EXPECT_THROW(ReadMeshFile(Path("missing.obj")), InputError);
   EXPECT_THROW(ReadMeshFile(folder_), InputError);
-}
-
-TEST_F(MeshFiles, PlyErrorsSayWhatIsWrong) {
-  const auto edited = [](const std::string& from, const std::string& to) {
-    std::string text = kPly;
-    return text.replace(text.find(from), from.size(), to);
-  };
-  EXPECT_EQ(ErrorOf("a.ply", edited("3 1 2 3", "3 1 2 4")), "a face uses vertex 4 of 4");
-  EXPECT_EQ(ErrorOf("a.ply", edited("3 1 2 3", "3 1 2 -1")), "a face uses vertex '-1'");
-  EXPECT_EQ(ErrorOf("a.ply", edited("3 1 2 3", "9 1 2 3")),
-            "ends before all that its header announces");
-  EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 nan\n")), "vertex 3 is not finite");
-  EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 1e999\n")), "vertex 3 is not finite");
-  EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 x\n")), "'x' is not a number");
-  EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 +-3\n")), "'+-3' is not a number");
-  EXPECT_EQ(ErrorOf("a.ply", edited("0 0 3\n", "0 0 +3\n")), "no error");
-  EXPECT_EQ(ErrorOf("a.ply", edited("vertex 4", "vertex 4000000000")),
-            "ends before all that its header announces");
-  EXPECT_EQ(ErrorOf("a.ply", edited("float z", "float w")), "its vertices have no 'z'");
-  EXPECT_EQ(ErrorOf("a.ply", edited("ascii", "utf8")),
-            "2: the format must be ascii, binary_little_endian or binary_big_endian");
-  EXPECT_EQ(ErrorOf("a.ply", edited("float z", "flaot z")), "6: names an unknown number type");
 }
 
 // Assimp would take all memory for some of these and read beyond its own for others.
