@@ -90,14 +90,22 @@ constexpr float kAzureEdgeStepM = 0.8F;  // pixels whose 3x3 neighbours differ b
 
 inline float AzureSigma(float z) { return 0.0005F + 0.001F * std::max(z - 0.5F, 0.0F); }
 
-// Whether there is a depth edge between a pixel of depth z and one of depth `z_other`, `pixels`
-// away: z_other cannot lie on the plane through the first at the given incidence. On a plane 1/z is
-// linear in pixel coordinates, with a relative slope of at most 1 / (f cos) per pixel; another 1 %
-// allows for curved surfaces.
-inline bool IsBreak(float z, float z_other, float pixels, float cosine, float focal_px) {
+// Two pixels, and the surface that the first one shows.
+struct PixelPair {
+  float z;
+  float z_other;
+  float apart_px;
+  float cosine;  // of the incidence at the first
+  float focal_px;
+};
+
+// Whether there is a depth edge between the two: z_other cannot lie on the plane through the first
+// at its incidence. On a plane 1/z is linear in pixel coordinates, with a relative slope of at most
+// 1 / (f cos) per pixel; another 1 % allows for curved surfaces.
+inline bool IsBreak(const PixelPair& pair) {
   constexpr float kSlack = 0.01F;
-  const float bound = pixels / (focal_px * std::max(cosine, 0.02F)) + kSlack;
-  return std::abs(z - z_other) > z_other * bound;
+  const float bound = pair.apart_px / (pair.focal_px * std::max(pair.cosine, 0.02F)) + kSlack;
+  return std::abs(pair.z - pair.z_other) > pair.z_other * bound;
 }
 
 }  // namespace depthgrid::noise

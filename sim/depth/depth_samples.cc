@@ -78,8 +78,11 @@ DepthSamples SampleAcrossEdges(const SampleSource& source, std::size_t first, st
   }
   for (std::size_t i = 0; i < kItems; ++i) {
     // An invalid depth (0) differs from any other surface.
-    const bool moves =
-        IsBreak(samples.z[i], other_z[i], shift_px[i], samples.cosine[i], source.focal_px);
+    const bool moves = IsBreak({.z = samples.z[i],
+                                .z_other = other_z[i],
+                                .apart_px = shift_px[i],
+                                .cosine = samples.cosine[i],
+                                .focal_px = source.focal_px});
     samples.z[i] = Select(moves, other_z[i], samples.z[i]);
     samples.cosine[i] = Select(moves, other_cosine[i], samples.cosine[i]);
   }
@@ -129,8 +132,13 @@ DepthSamples SampleBetweenPixels(const SampleSource& source, std::size_t first, 
     const float low = std::min(std::min(p, q), std::min(r, s));
     const float high = std::max(std::max(p, q), std::max(r, s));
     constexpr float kDiagonalPx = 1.41421356F;
-    // An invalid depth (0) differs from any other surface.
-    const bool breaks = IsBreak(high, low, kDiagonalPx, samples.cosine[i], source.focal_px);
+    // An invalid depth (0) differs from any other surface. These are inverse depths; their ratio is
+    // that of the depths.
+    const bool breaks = IsBreak({.z = high,
+                                 .z_other = low,
+                                 .apart_px = kDiagonalPx,
+                                 .cosine = samples.cosine[i],
+                                 .focal_px = source.focal_px});
     const float top = p + right[i] * (q - p), bottom = r + right[i] * (s - r);
     const float between = top + down[i] * (bottom - top);
     const float inverse = Select(breaks, near[i], between);

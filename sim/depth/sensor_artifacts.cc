@@ -27,7 +27,13 @@ float AcrossEdge(const DepthFrame& clean, const PinholeCamera& camera, int u, in
     }
     const float neighbour_z = depth.At(neighbour_u, neighbour_v);
     if (neighbour_z <= 0.0F) return;
-    if (!noise::IsBreak(z, neighbour_z, 1.0F, clean.incidence_cos[index], focal_px)) return;
+    if (!noise::IsBreak({.z = z,
+                         .z_other = neighbour_z,
+                         .apart_px = 1.0F,
+                         .cosine = clean.incidence_cos[index],
+                         .focal_px = focal_px})) {
+      return;
+    }
     if (std::abs(neighbour_z - z) > std::abs(other - z)) other = neighbour_z;
   };
   look(u - 1, v);
