@@ -32,6 +32,13 @@ struct ScoredMaps {
 ScoredMaps OnOneGeometry(const StateMap& truth, const StateMap& estimate,
                          const std::optional<CellSet>& observable);
 
+// Cells of one kind, such as walls, in both maps, and those to be scored. Refers to them.
+struct ScoredCells {
+  const CellSet& truth;
+  const CellSet& estimate;
+  const CellSet& scored;
+};
+
 // Cell centres in metres, in the order of the cells.
 std::vector<Eigen::Vector2d> CentresOf(const CellSet& set);
 

@@ -18,25 +18,19 @@ int CountBoth(const CellSet& a, const CellSet& b) {
   return count;
 }
 
-// Cells of `members` that are scored, and those of them that `near` covers.
+// How many cells count, and how many of them `near` covers.
 struct Tally {
   int counted = 0;
   int matched = 0;
 };
-Tally Count(const CellSet& members, const CellSet& scored, const CellSet& near) {
-  Tally tally;
-  for (std::size_t i = 0; i < members.members.size(); ++i) {
-    const int counts = members.members[i] & scored.members[i];
-    tally.counted += counts;
-    tally.matched += counts & near.members[i];
-  }
-  return tally;
+Tally Count(const CellSet& counting, const CellSet& near) {
+  return {CountBoth(counting, counting), CountBoth(counting, near)};
 }
 
-StateScore ScoreState(const CellSet& truth, const CellSet& estimate, const CellSet& scored,
-                      int tolerance_cells) {
-  const Tally right = Count(estimate, scored, Grown(truth, tolerance_cells));
-  const Tally found = Count(truth, scored, Grown(estimate, tolerance_cells));
+StateScore ScoreState(const ScoredCells& cells, int tolerance_cells) {
+  const auto& [truth, estimate, scored] = cells;
+  const Tally right = Count(InBoth(estimate, scored), Grown(truth, tolerance_cells));
+  const Tally found = Count(InBoth(truth, scored), Grown(estimate, tolerance_cells));
   StateScore score;
   score.estimated_cells = right.counted;
   score.right_cells = right.matched;
@@ -49,12 +43,11 @@ StateScore ScoreState(const CellSet& truth, const CellSet& estimate, const CellS
   return score;
 }
 
-// Distances in metres from each scored member of `from` to the nearest member of `to`.
-std::vector<double> DirectedDistances(const CellSet& from, const CellSet& scored,
-                                      const std::vector<double>& squared_to) {
+// Distances in metres from each member of `from` to where `squared_to` is 0.
+std::vector<double> DirectedDistances(const CellSet& from, const std::vector<double>& squared_to) {
   std::vector<double> distances_m;
   for (std::size_t i = 0; i < from.members.size(); ++i) {
-    if ((from.members[i] & scored.members[i]) == 0) continue;
+    if (from.members[i] == 0) continue;
     distances_m.push_back(std::sqrt(squared_to[i]) * from.geometry.resolution_m);
   }
   return distances_m;
@@ -64,18 +57,18 @@ bool IsEmpty(const CellSet& mask) {
   return std::find(mask.members.begin(), mask.members.end(), 1) == mask.members.end();
 }
 
-DistanceScore ScoreDistances(const CellSet& truth, const CellSet& estimate, const CellSet& scored) {
+DistanceScore ScoreDistances(const ScoredCells& walls) {
+  const auto& [truth, estimate, scored] = walls;
   if (IsEmpty(truth) || IsEmpty(estimate)) return {};
-  return ScoreOfDistances(DirectedDistances(estimate, scored, SquaredDistances(truth)),
-                          DirectedDistances(truth, scored, SquaredDistances(estimate)));
+  return ScoreOfDistances(DirectedDistances(InBoth(estimate, scored), SquaredDistances(truth)),
+                          DirectedDistances(InBoth(truth, scored), SquaredDistances(estimate)));
 }
 
-void ScoreConfusion(const StateMap& truth, const StateMap& estimate, const CellSet& scored,
-                    CellScores& scores) {
-  for (std::size_t i = 0; i < truth.states.size(); ++i) {
-    if (scored.members[i] == 0) continue;
-    const auto row = static_cast<std::size_t>(truth.states[i]);
-    const auto column = static_cast<std::size_t>(estimate.states[i]);
+void ScoreConfusion(const ScoredMaps& maps, CellScores& scores) {
+  for (std::size_t i = 0; i < maps.truth.states.size(); ++i) {
+    if (maps.scored.members[i] == 0) continue;
+    const auto row = static_cast<std::size_t>(maps.truth.states[i]);
+    const auto column = static_cast<std::size_t>(maps.estimate.states[i]);
     ++scores.confusion[row][column];
     ++scores.scored_cells;
   }
@@ -100,21 +93,22 @@ std::optional<double> Matthews(const CellScores& scores, CellState state) {
   return Ratio(both * neither - truth_only * estimate_only, std::sqrt(product));
 }
 
-// All maps on one geometry; `to_cover` are the cells that coverage asks for.
-CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const CellSet& scored,
-                      const CellSet& to_cover) {
-  const CellSet true_walls = CellsIn(truth, CellState::kOccupied);
-  const CellSet walls = CellsIn(estimate, CellState::kOccupied);
-  const CellSet true_free = CellsIn(truth, CellState::kFree);
-  const CellSet free = CellsIn(estimate, CellState::kFree);
+// `to_cover` are the cells that coverage asks for.
+CellScores ScoreCells(const ScoredMaps& maps, const CellSet& to_cover) {
+  const CellSet true_walls = CellsIn(maps.truth, CellState::kOccupied);
+  const CellSet walls = CellsIn(maps.estimate, CellState::kOccupied);
+  const CellSet true_free = CellsIn(maps.truth, CellState::kFree);
+  const CellSet free = CellsIn(maps.estimate, CellState::kFree);
+  const ScoredCells occupied = {.truth = true_walls, .estimate = walls, .scored = maps.scored};
   CellScores scores;
-  static_cast<DistanceScore&>(scores) = ScoreDistances(true_walls, walls, scored);
+  static_cast<DistanceScore&>(scores) = ScoreDistances(occupied);
   for (int tolerance = 0; tolerance <= kMaxToleranceCells; ++tolerance) {
     const auto index = static_cast<std::size_t>(tolerance);
-    scores.occupied[index] = ScoreState(true_walls, walls, scored, tolerance);
-    scores.free[index] = ScoreState(true_free, free, scored, tolerance);
+    scores.occupied[index] = ScoreState(occupied, tolerance);
+    scores.free[index] =
+        ScoreState({.truth = true_free, .estimate = free, .scored = maps.scored}, tolerance);
   }
-  ScoreConfusion(truth, estimate, scored, scores);
+  ScoreConfusion(maps, scores);
   scores.occupied_mcc = Matthews(scores, CellState::kOccupied);
   scores.free_mcc = Matthews(scores, CellState::kFree);
   const int asked = CountBoth(to_cover, to_cover);
@@ -126,14 +120,11 @@ CellScores ScoreCells(const StateMap& truth, const StateMap& estimate, const Cel
 
 MapScore ScoreMap(const StateMap& truth, const StateMap& estimate,
                   const std::optional<CellSet>& observable) {
-  const ScoredMaps maps = OnOneGeometry(truth, estimate, observable);
-  CellSet everywhere(maps.truth.geometry);
-  std::fill(everywhere.members.begin(), everywhere.members.end(), 1);
+  ScoredMaps maps = OnOneGeometry(truth, estimate, observable);
   MapScore score;
-  score.all = ScoreCells(maps.truth, maps.estimate, everywhere, KnownCells(maps.truth));
-  if (observable) {
-    score.observable = ScoreCells(maps.truth, maps.estimate, maps.scored, maps.scored);
-  }
+  if (observable) score.observable = ScoreCells(maps, maps.scored);
+  std::fill(maps.scored.members.begin(), maps.scored.members.end(), 1);
+  score.all = ScoreCells(maps, KnownCells(maps.truth));
   return score;
 }
 

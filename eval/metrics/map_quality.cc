@@ -38,7 +38,8 @@ std::optional<MapRegistration> RegistrationOf(const ScoredMaps& maps, const Cell
   const Pose2 between = onto_lattice * Inverse(top);
   if (RegistrationBy(between, {placed.walls, top}).mean_shift_m > most_unknown_m) return found;
   const auto distances = [&](const Pose2& truth_from_cells) {
-    return DistancesToWallLines(true_walls, placed.walls, maps.scored, truth_from_cells);
+    return DistancesToWallLines(
+        {.truth = true_walls, .estimate = placed.walls, .scored = maps.scored}, truth_from_cells);
   };
   const auto on_lattice = distances(onto_lattice);
   const auto moved = distances(top);
@@ -66,8 +67,9 @@ MapQuality ScoreMapQuality(const StateMap& truth, const OccupancyMap& estimate,
   const CellSet walls = CellsIn(maps.estimate, CellState::kOccupied);
   const PlacedWalls placed = own_walls.value_or(PlacedWalls{walls, {}});
   const auto moved_by = [&](const Pose2& motion) {
-    return ScoreWallDistances(true_walls, placed.walls, maps.scored,
-                              motion * placed.truth_from_cells);
+    return ScoreWallDistances(
+        {.truth = true_walls, .estimate = placed.walls, .scored = maps.scored},
+        motion * placed.truth_from_cells);
   };
   MapQuality quality;
   quality.walls = moved_by({});
@@ -77,7 +79,8 @@ MapQuality ScoreMapQuality(const StateMap& truth, const OccupancyMap& estimate,
   }
   quality.thickness = ThicknessOf(walls, maps.scored);
   quality.true_thickness = ThicknessOf(true_walls, maps.scored);
-  quality.double_wall_rate = DoubleWallRate(true_walls, walls, maps.scored);
+  quality.double_wall_rate =
+      DoubleWallRate({.truth = true_walls, .estimate = walls, .scored = maps.scored});
   quality.calibration = Calibrate(maps.truth, estimate, maps.scored);
   if (options.ssim) quality.ssim = Ssim(maps.truth, maps.estimate, maps.scored);
   quality.truthless = ScoreWithoutTruth(maps.estimate);

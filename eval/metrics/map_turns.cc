@@ -50,8 +50,9 @@ std::optional<MapTurn> TurnOf(const StateMap& truth, const PlacedWalls& estimate
     turned.truth_from_cells = {shift.x(), shift.y(), about_zero.yaw_rad};
     const auto found = RegisterWalls(truth, turned, scored);
     if (!found) continue;
-    const auto score = ScoreWallDistances(true_walls, turned.walls, scored,
-                                          found->truth_from_estimate * turned.truth_from_cells);
+    const auto score =
+        ScoreWallDistances({.truth = true_walls, .estimate = turned.walls, .scored = scored},
+                           found->truth_from_estimate * turned.truth_from_cells);
     if (score.f1_10cm.value_or(0.0) < best_f1) continue;
     best_f1 = *score.f1_10cm;
     best = turn;

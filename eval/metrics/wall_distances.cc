@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "eval/metrics/cell_maps.h"
 #include "eval/metrics/nearest_points.h"
@@ -16,28 +17,41 @@ double ShareWithin(const std::vector<double>& distances_m, double limit_m) {
   return static_cast<double>(within) / static_cast<double>(distances_m.size());
 }
 
-// Distances from each map's points in scored cells to the other map's targets.
-struct BothWays {
-  std::vector<double> forth_m;  // from the estimate
-  std::vector<double> back_m;
-};
-
 std::vector<Eigen::Vector2d> Moved(const Pose2& motion, std::vector<Eigen::Vector2d> points) {
   for (Eigen::Vector2d& p : points) p = motion * p;
   return points;
 }
 
-BothWays DistancesOf(const CellSet& true_walls, const std::vector<Eigen::Vector2d>& true_targets,
-                     const std::vector<Eigen::Vector2d>& points,
-                     const std::vector<Eigen::Vector2d>& targets, const CellSet& scored) {
-  if (true_targets.empty() || targets.empty()) return {};
-  const double resolution_m = scored.geometry.resolution_m;
+// The points of a map's walls that count, and all that distances from the other map's are to.
+struct WallSide {
   std::vector<Eigen::Vector2d> counted;
-  for (const Eigen::Vector2d& p : points) {
-    if (scored.Has(CellOf(p, resolution_m))) counted.push_back(p);
+  std::vector<Eigen::Vector2d> targets;
+};
+
+WallSide SideOfTruth(const ScoredCells& walls, std::vector<Eigen::Vector2d> targets) {
+  return {CentresOf(InBoth(walls.truth, walls.scored)), std::move(targets)};
+}
+
+WallSide SideOfEstimate(const ScoredCells& walls, const Pose2& truth_from_estimate,
+                        std::vector<Eigen::Vector2d> targets) {
+  WallSide side;
+  for (const Eigen::Vector2d& p : Moved(truth_from_estimate, CentresOf(walls.estimate))) {
+    if (walls.scored.Has(CellOf(p, walls.scored.geometry.resolution_m))) side.counted.push_back(p);
   }
-  return {NearestDistances(counted, true_targets),
-          NearestDistances(CentresOf(InBoth(true_walls, scored)), targets)};
+  side.targets = Moved(truth_from_estimate, std::move(targets));
+  return side;
+}
+
+// Distances from each map's counted points to the other map's targets.
+struct BothWays {
+  std::vector<double> forth_m;  // from the estimate
+  std::vector<double> back_m;
+};
+
+BothWays DistancesBetween(const WallSide& truth, const WallSide& estimate) {
+  if (truth.targets.empty() || estimate.targets.empty()) return {};
+  return {NearestDistances(estimate.counted, truth.targets),
+          NearestDistances(truth.counted, estimate.targets)};
 }
 
 // Centres, and points on the lines from each to those of its neighbours.
@@ -88,11 +102,10 @@ DistanceScore ScoreOfDistances(const std::vector<double>& estimate_to_truth_m,
   return score;
 }
 
-WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
-                                     const CellSet& scored, const Pose2& truth_from_estimate) {
-  const std::vector<Eigen::Vector2d> points = Moved(truth_from_estimate, CentresOf(walls));
+WallDistanceScore ScoreWallDistances(const ScoredCells& walls, const Pose2& truth_from_estimate) {
   const auto [forth_m, back_m] =
-      DistancesOf(true_walls, CentresOf(true_walls), points, points, scored);
+      DistancesBetween(SideOfTruth(walls, CentresOf(walls.truth)),
+                       SideOfEstimate(walls, truth_from_estimate, CentresOf(walls.estimate)));
   WallDistanceScore score;
   static_cast<DistanceScore&>(score) = ScoreOfDistances(forth_m, back_m);
   if (forth_m.empty() || back_m.empty()) return score;
@@ -101,12 +114,11 @@ WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& w
   return score;
 }
 
-std::optional<LineDistances> DistancesToWallLines(const CellSet& true_walls, const CellSet& walls,
-                                                  const CellSet& scored,
+std::optional<LineDistances> DistancesToWallLines(const ScoredCells& walls,
                                                   const Pose2& truth_from_estimate) {
-  const auto [forth_m, back_m] = DistancesOf(
-      true_walls, LinesThrough(true_walls), Moved(truth_from_estimate, CentresOf(walls)),
-      Moved(truth_from_estimate, LinesThrough(walls)), scored);
+  const auto [forth_m, back_m] =
+      DistancesBetween(SideOfTruth(walls, LinesThrough(walls.truth)),
+                       SideOfEstimate(walls, truth_from_estimate, LinesThrough(walls.estimate)));
   if (forth_m.empty() || back_m.empty()) return {};
   return LineDistances{Summarise(forth_m).mean, Summarise(back_m).mean};
 }

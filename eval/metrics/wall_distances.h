@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "mapper/core/cell_set.h"
+#include "eval/metrics/cell_maps.h"
 #include "mapper/core/pose2.h"
 
 namespace depthgrid {
@@ -39,10 +39,10 @@ struct WallDistanceScore : DistanceScore {
 };
 
 // The estimate's walls, which may have their own geometry, are moved first. Counted are those that
-// then lie in scored cells, and the true walls in scored cells. `true_walls` and `scored` have the
-// same geometry.
-WallDistanceScore ScoreWallDistances(const CellSet& true_walls, const CellSet& walls,
-                                     const CellSet& scored, const Pose2& truth_from_estimate = {});
+// then lie in scored cells, and the true walls in scored cells. The true walls and the scored cells
+// have the same geometry.
+WallDistanceScore ScoreWallDistances(const ScoredCells& walls,
+                                     const Pose2& truth_from_estimate = {});
 
 struct LineDistances {
   double estimate_to_truth_m = 0.0;
@@ -52,8 +52,7 @@ struct LineDistances {
 // Mean distances from wall cells, as above, to lines between the centres of the other map's
 // neighbouring wall cells. Unlike distances between centres, they do not grow when a wall is moved
 // along itself by part of a cell. Empty when no wall counts in one of the directions.
-std::optional<LineDistances> DistancesToWallLines(const CellSet& true_walls, const CellSet& walls,
-                                                  const CellSet& scored,
+std::optional<LineDistances> DistancesToWallLines(const ScoredCells& walls,
                                                   const Pose2& truth_from_estimate = {});
 
 }  // namespace depthgrid

@@ -119,18 +119,18 @@ std::optional<WallThickness> ThicknessOf(const CellSet& walls, const CellSet& sc
   return WallThickness{Summarise(thickness_m).mean, Percentile(thickness_m, kP95)};
 }
 
-std::optional<double> DoubleWallRate(const CellSet& true_walls, const CellSet& walls,
-                                     const CellSet& scored) {
+std::optional<double> DoubleWallRate(const ScoredCells& walls) {
+  const CellSet& drawn = walls.estimate;
   const int reach_cells =
-      static_cast<int>(std::lround(kDoubleWallReachM / walls.geometry.resolution_m));
+      static_cast<int>(std::lround(kDoubleWallReachM / drawn.geometry.resolution_m));
   int counted = 0;
   int doubled = 0;
-  ForScoredWalls(walls, scored, [&](const Cell& cell) {
-    const bool along_x = RunCells(walls, cell, {1, 0}) <= RunCells(walls, cell, {0, 1});
+  ForScoredWalls(drawn, walls.scored, [&](const Cell& cell) {
+    const bool along_x = RunCells(drawn, cell, {1, 0}) <= RunCells(drawn, cell, {0, 1});
     const Direction across = along_x ? Direction{1, 0} : Direction{0, 1};
     ++counted;
-    doubled += IsDoubled(true_walls, walls, cell, across, reach_cells) ||
-                       IsDoubled(true_walls, walls, cell, Back(across), reach_cells)
+    doubled += IsDoubled(walls.truth, drawn, cell, across, reach_cells) ||
+                       IsDoubled(walls.truth, drawn, cell, Back(across), reach_cells)
                    ? 1
                    : 0;
   });

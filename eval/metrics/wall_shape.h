@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "eval/metrics/cell_maps.h"
 #include "mapper/core/cell_set.h"
 
 namespace depthgrid {
@@ -28,7 +29,6 @@ constexpr int kWallToleranceCells = 1;
 // shorter run) and beyond a gap, a second estimated wall within kDoubleWallReachM, where not each
 // of the two lies beside a true wall of its own. The two faces of something solid are two such
 // walls. Empty without walls.
-std::optional<double> DoubleWallRate(const CellSet& true_walls, const CellSet& walls,
-                                     const CellSet& scored);
+std::optional<double> DoubleWallRate(const ScoredCells& walls);
 
 }  // namespace depthgrid

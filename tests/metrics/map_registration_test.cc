@@ -196,7 +196,8 @@ TEST(WallDistances, HandWorked) {
   const StateMap estimate = DrawnMap({".#...", ".#...", "...#."});
   const CellSet all = Everywhere(truth.geometry);
   const auto walls = [](const StateMap& map) { return CellsIn(map, CellState::kOccupied); };
-  const WallDistanceScore score = ScoreWallDistances(walls(truth), walls(estimate), all);
+  const WallDistanceScore score =
+      ScoreWallDistances({.truth = walls(truth), .estimate = walls(estimate), .scored = all});
   EXPECT_NEAR(*score.estimate_to_truth_m, (0.05 + 0.05 + 0.15) / 3, 1e-12);
   // From below: the nearest estimated cells are 1, 1 and sqrt(2) cells away.
   EXPECT_NEAR(*score.truth_to_estimate_m, 0.05 * (2 + std::sqrt(2.0)) / 3, 1e-12);
@@ -204,17 +205,21 @@ TEST(WallDistances, HandWorked) {
   const double recall = 1.0, precision = 2.0 / 3.0;
   EXPECT_NEAR(*score.f1_10cm, 2 * recall * precision / (recall + precision), 1e-12);
   // Moved by one cell to the left, the upper two coincide.
-  const auto moved = ScoreWallDistances(walls(truth), walls(estimate), all, {-0.05, 0.0, 0.0});
+  const auto moved = ScoreWallDistances(
+      {.truth = walls(truth), .estimate = walls(estimate), .scored = all}, {-0.05, 0.0, 0.0});
   EXPECT_NEAR(*moved.estimate_to_truth_m, 0.1 / 3, 1e-12);
   // Lines: where walls that cross half a cell off lie on the other's, centres are half a cell away.
   const StateMap level = DrawnMap({".....", "#####", "....."});
-  const auto along = DistancesToWallLines(walls(level), walls(level), all, {0.025, 0.0, 0.0});
+  const auto along = DistancesToWallLines(
+      {.truth = walls(level), .estimate = walls(level), .scored = all}, {0.025, 0.0, 0.0});
   EXPECT_NEAR(along->estimate_to_truth_m + along->truth_to_estimate_m, 0.025 / 5, 1e-12);
-  const auto across = DistancesToWallLines(walls(level), walls(level), all, {0.0, 0.025, 0.0});
+  const auto across = DistancesToWallLines(
+      {.truth = walls(level), .estimate = walls(level), .scored = all}, {0.0, 0.025, 0.0});
   EXPECT_NEAR(across->estimate_to_truth_m, 0.025, 1e-12);
   EXPECT_NEAR(across->truth_to_estimate_m, 0.025, 1e-12);
   // Where only true walls are scored there is one direction, and no score of both.
-  const auto one_way = ScoreWallDistances(walls(truth), walls(estimate), walls(truth));
+  const auto one_way = ScoreWallDistances(
+      {.truth = walls(truth), .estimate = walls(estimate), .scored = walls(truth)});
   EXPECT_FALSE(one_way.estimate_to_truth_m);
   EXPECT_EQ(one_way.truth_to_estimate_m, score.truth_to_estimate_m);
   EXPECT_FALSE(one_way.chamfer_m || one_way.hausdorff95_m || one_way.f1_5cm || one_way.f1_10cm);

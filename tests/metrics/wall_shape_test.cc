@@ -31,7 +31,9 @@ TEST(WallThickness, HandWorked) {
 
 double DoubleRate(const std::vector<std::string>& truth, const std::vector<std::string>& estimate) {
   const StateMap t = DrawnMap(truth);
-  return *DoubleWallRate(DrawnWalls(t), DrawnWalls(DrawnMap(estimate)), Everywhere(t.geometry));
+  return *DoubleWallRate({.truth = DrawnWalls(t),
+                          .estimate = DrawnWalls(DrawnMap(estimate)),
+                          .scored = Everywhere(t.geometry)});
 }
 
 TEST(DoubleWalls, HandWorked) {
@@ -63,7 +65,8 @@ CellSet WallsWhere(const IsWall& is_wall) {
 }
 
 double RateOf(const CellSet& truth, const CellSet& estimate) {
-  return *DoubleWallRate(truth, estimate, Everywhere(truth.geometry));
+  return *DoubleWallRate(
+      {.truth = truth, .estimate = estimate, .scored = Everywhere(truth.geometry)});
 }
 
 // With its two faces a wall of 10 cm has two rows of cells; they are no second wall in the room.
