@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdio>
@@ -24,7 +25,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::seconds kPollInterval{2};
+// The parts' folders are read again after a wait that doubles from the first to the longest of
+// these, so that the end of a short sweep is seen at once and hundreds of folders on a network's
+// disk are not read all the time.
+constexpr std::chrono::milliseconds kFirstWait{50};
+constexpr std::chrono::milliseconds kLongestWait{2000};
+// Slurm's controller, which serves the whole site, is not asked more often; so parts that end at
+// once are not submitted more often either.
+constexpr std::chrono::seconds kBetweenQueries{2};
 constexpr std::chrono::minutes kLongestSilence{5};  // enough to restart Slurm's controller
 constexpr int kMostFruitlessStarts = 3;
 
@@ -61,15 +69,19 @@ std::string JobList(const std::string& folder) { return folder + "/slurm/jobs.tx
 // Queries Slurm's queue; tolerates temporary failures.
 class Queue {
  public:
-  // Parts of these jobs that are queued or running. Empty when squeue fails temporarily.
+  // Parts of these jobs that are queued or running. Empty when squeue fails temporarily, and within
+  // kBetweenQueries after the last query.
   std::optional<std::set<int>> Parts(const std::set<std::string>& job_ids);
 
  private:
+  std::optional<std::chrono::steady_clock::time_point> asked_;
   std::optional<std::chrono::steady_clock::time_point> answered_;
 };
 
 std::optional<std::set<int>> Queue::Parts(const std::set<std::string>& job_ids) {
   const auto now = std::chrono::steady_clock::now();
+  if (asked_ && now - *asked_ < kBetweenQueries) return std::nullopt;
+  asked_ = now;
   // One line per task: job id of the array and index in it. Completing tasks count as ended.
   const CommandOutput queue = OutputOf(
       "squeue --noheader --array --me --states=PENDING,RUNNING,CONFIGURING,SUSPENDED "
@@ -156,6 +168,22 @@ State StateOf(const SlurmJob& job) {
   return state;
 }
 
+// Counts the starts of each part since it last got on.
+class Starts {
+ public:
+  // Counts another start of a part with this many finished runs; false if it is one too many.
+  bool MayStart(int part, int done) {
+    const bool got_on = done > done_at_start_[part];
+    fruitless_[part] = got_on ? 1 : fruitless_[part] + 1;
+    done_at_start_[part] = done;
+    return fruitless_[part] <= kMostFruitlessStarts;
+  }
+
+ private:
+  std::map<int, int> fruitless_;
+  std::map<int, int> done_at_start_;
+};
+
 }  // namespace
 
 std::string PartFolder(const std::string& folder, int part) {
@@ -179,28 +207,24 @@ std::string ArrayText(const std::set<int>& parts) {
 void RunOnSlurm(const SlurmJob& job) {
   Submission submission(job);
   Queue queue;
-  std::map<int, int> fruitless;      // starts of each part since its last progress
-  std::map<int, int> done_at_start;  // finished runs at the last start
+  Starts starts;
+  auto wait = kFirstWait;
   for (State state = StateOf(job); !state.unfinished.empty(); state = StateOf(job)) {
-    const auto queued = queue.Parts(submission.job_ids());
-    if (queued) {
+    if (const auto queued = queue.Parts(submission.job_ids())) {
       // Read the folders again: a part may have finished before squeue was called.
       std::set<int> ended = StateOf(job).unfinished;
       for (const int part : *queued) ended.erase(part);
       for (const int part : ended) {
-        const bool got_on = state.done[part] > done_at_start[part];
-        fruitless[part] = got_on ? 1 : fruitless[part] + 1;
-        done_at_start[part] = state.done[part];
-        if (fruitless[part] > kMostFruitlessStarts) {
-          throw std::runtime_error(
-              fmt::format("part {} ended {} times without a result; see {}/*_{}.log", part,
-                          kMostFruitlessStarts, submission.folder(), part));
-        }
+        if (starts.MayStart(part, state.done[part])) continue;
+        throw std::runtime_error(
+            fmt::format("part {} ended {} times without a result; see {}/*_{}.log", part,
+                        kMostFruitlessStarts, submission.folder(), part));
       }
       if (!ended.empty()) submission.Submit(ended);
     }
     job.progress(state.sum.done, state.sum.total);
-    std::this_thread::sleep_for(kPollInterval);
+    std::this_thread::sleep_for(wait);
+    wait = std::min(2 * wait, kLongestWait);
   }
 }
 

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <cstdlib>
 
 #include "eval/sweep/sweep_results.h"
@@ -99,6 +102,36 @@ TEST_F(SlurmProgram, StoppedItLeavesItsJobsAndPartsAndGoesOn) {
   EXPECT_EQ(ReadFile(Path("out/shards/1/results.csv")), part);
   Succeed("sweep ./sweep.yaml -o here");
   EXPECT_TRUE(TableOf("out") == TableOf("here"));
+}
+
+// The tasks have ended when sbatch returns; to join them takes part of a second.
+TEST_F(SlurmProgram, TheEndOfItsTasksIsSeenAtOnce) {
+  Script("sbatch", std::string(kBatch) + "touch \"$PLAYED/returned\"\n");
+  constexpr double kLongestWaitS = 2.0;
+  // Of several tries, as the machine may be busy with others.
+  double least_s = INFINITY;
+  for (int i = 0; i < 5 && least_s >= kLongestWaitS; ++i) {
+    Succeed(fmt::format("{}out{}", kOnSlurm, i));
+    const auto since = fs::file_time_type::clock::now() - fs::last_write_time(Path("returned"));
+    least_s = std::min(least_s, std::chrono::duration<double>(since).count());
+  }
+  EXPECT_LT(least_s, kLongestWaitS);
+}
+
+TEST_F(SlurmProgram, TheQueueIsAskedEveryTwoSecondsAtMost) {
+  // Tasks that go on behind sbatch's back.
+  Play("(sleep 1; sh \"$1\") > /dev/null 2>&1 &");
+  // Nothing is queued until something is submitted.
+  Script("squeue",
+         "#!/bin/sh\n"
+         "echo asked >> \"$PLAYED/asked\"\n"
+         "if [ -e \"$PLAYED/names\" ]; then echo 7 1; echo 7 2; fi\n");
+  const auto start = std::chrono::steady_clock::now();
+  Succeed(kOnSlurm + std::string("out"));
+  const double took_s =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::string asked = ReadFile(Path("asked"));
+  EXPECT_LE(std::count(asked.begin(), asked.end(), '\n'), 1 + took_s / 2.0);
 }
 
 // As a kill after the database, before the table, leaves them.
