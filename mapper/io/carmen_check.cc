@@ -205,54 +205,67 @@ std::optional<std::string> CarmenCheck::DoubtOfLongest(const std::string& path) 
       std::floor(kPercent * crowd->shortest_m) / kPercent);
 }
 
+std::optional<std::string> CarmenCheck::DoubtOfHeadings(const std::string& path) const {
+  if (!beyond_a_turn_ || impossible_steps_ < kFewestImpossibleSteps ||
+      impossible_steps_ < kImpossibleShare * steps_) {
+    return {};
+  }
+  return fmt::format(
+      "{}:{}: the heading is {:g}, and {} of {} headings turn faster than a robot does: they must "
+      "be in radians, are they in degrees?",
+      path, beyond_a_turn_->line_number, beyond_a_turn_->yaw_rad, impossible_steps_, steps_);
+}
+
+std::optional<std::string> CarmenCheck::DoubtOfStamps(const std::string& path) const {
+  const double step_s = steps_s_.size() >= kFewestSteps ? UpperMedian(steps_s_) : 0.0;
+  if (step_s < kLongStepS) return {};
+  return fmt::format("{}:{}: scans come {:g} s after each other: are the stamps in seconds?", path,
+                     second_line_, step_s);
+}
+
+std::optional<std::string> CarmenCheck::DoubtOfStatedMount(const std::string& path) const {
+  if (stated_mounts_ == 0) return {};
+  return fmt::format(
+      "{}:{}: the line states two poses, the laser's and the robot's, {:.2f} m and {:.0f} degrees "
+      "apart ({}): sequence.laser.mount is where the laser is from the first of them, and a log "
+      "that states the laser's poses needs none",
+      path, stated_mount_line_, stated_mount_.translation().norm(),
+      std::abs(DegFromRad(stated_mount_.yaw_rad)), Counted(stated_mounts_, "such line"));
+}
+
+std::optional<std::string> CarmenCheck::DoubtOfCount(const std::string& path) const {
+  if (uncommon_counts_ == 0) return {};
+  return fmt::format(
+      "{}:{}: FLASER with {} readings states no angles and is taken as 180 degrees wide ({}): "
+      "--set sequence.laser.fov_deg=DEGREES says another width",
+      path, first_count_line_, first_count_, Counted(uncommon_counts_, "such line"));
+}
+
+std::optional<std::string> CarmenCheck::DoubtOfAngles(const std::string& path) const {
+  if (contradictions_ == 0) return {};
+  return fmt::format(
+      "{}:{}: ROBOTLASER1 states a field of view of {:.4g} rad and {} readings {:.4g} rad apart, "
+      "which span {:.4g} rad; the resolution is taken ({}): one of the two is wrong",
+      path, contradiction_line_, contradiction_fov_rad_, contradiction_count_,
+      contradiction_step_rad_,
+      contradiction_step_rad_ * static_cast<double>(contradiction_count_ - 1),
+      Counted(contradictions_, "such line"));
+}
+
+std::optional<std::string> CarmenCheck::DoubtOfFov() const {
+  if (!knows_fov_ || !any_states_angles_ || any_takes_fov_) return {};
+  return "sequence.laser.fov_deg: has no effect because all lines of the log state their angles";
+}
+
 std::vector<std::string> CarmenCheck::Warnings(const std::string& path) const {
-  std::vector<std::string> warnings;
   const auto largest = DoubtOfLargest(path);
   const auto units = DoubtOfUnits(path);
   const auto longest = largest || units ? std::nullopt : DoubtOfLongest(path);
-  for (const auto& doubt : {largest, units, longest}) {
+  std::vector<std::string> warnings;
+  for (const auto& doubt :
+       {largest, units, longest, DoubtOfHeadings(path), DoubtOfStamps(path), DoubtOfFov(),
+        DoubtOfStatedMount(path), DoubtOfCount(path), DoubtOfAngles(path)}) {
     if (doubt) warnings.push_back(*doubt);
-  }
-  if (beyond_a_turn_ && impossible_steps_ >= kFewestImpossibleSteps &&
-      impossible_steps_ >= kImpossibleShare * steps_) {
-    warnings.push_back(fmt::format(
-        "{}:{}: the heading is {:g}, and {} of {} headings turn faster than a robot does: they "
-        "must be in radians, are they in degrees?",
-        path, beyond_a_turn_->line_number, beyond_a_turn_->yaw_rad, impossible_steps_, steps_));
-  }
-  const double step_s = steps_s_.size() >= kFewestSteps ? UpperMedian(steps_s_) : 0.0;
-  if (step_s >= kLongStepS) {
-    warnings.push_back(
-        fmt::format("{}:{}: scans come {:g} s after each other: are the stamps in seconds?", path,
-                    second_line_, step_s));
-  }
-  if (knows_fov_ && any_states_angles_ && !any_takes_fov_) {
-    warnings.push_back(
-        "sequence.laser.fov_deg: has no effect because all lines of the log state their angles");
-  }
-  if (stated_mounts_ > 0) {
-    warnings.push_back(fmt::format(
-        "{}:{}: the line states two poses, the laser's and the robot's, {:.2f} m and {:.0f} "
-        "degrees apart ({}): sequence.laser.mount is where the laser is from the first of them, "
-        "and a log "
-        "that states the laser's poses needs none",
-        path, stated_mount_line_, stated_mount_.translation().norm(),
-        std::abs(DegFromRad(stated_mount_.yaw_rad)), Counted(stated_mounts_, "such line")));
-  }
-  if (uncommon_counts_ > 0) {
-    warnings.push_back(fmt::format(
-        "{}:{}: FLASER with {} readings states no angles and is taken as 180 degrees wide ({}): "
-        "--set sequence.laser.fov_deg=DEGREES says another width",
-        path, first_count_line_, first_count_, Counted(uncommon_counts_, "such line")));
-  }
-  if (contradictions_ > 0) {
-    warnings.push_back(fmt::format(
-        "{}:{}: ROBOTLASER1 states a field of view of {:.4g} rad and {} readings {:.4g} rad apart, "
-        "which span {:.4g} rad; the resolution is taken ({}): one of the two is wrong",
-        path, contradiction_line_, contradiction_fov_rad_, contradiction_count_,
-        contradiction_step_rad_,
-        contradiction_step_rad_ * static_cast<double>(contradiction_count_ - 1),
-        Counted(contradictions_, "such line")));
   }
   return warnings;
 }

@@ -32,6 +32,12 @@ class CarmenCheck {
   std::optional<std::string> DoubtOfUnits(const std::string& path) const;
   std::optional<std::string> DoubtOfLargest(const std::string& path) const;
   std::optional<std::string> DoubtOfLongest(const std::string& path) const;
+  std::optional<std::string> DoubtOfHeadings(const std::string& path) const;
+  std::optional<std::string> DoubtOfStamps(const std::string& path) const;
+  std::optional<std::string> DoubtOfFov() const;
+  std::optional<std::string> DoubtOfStatedMount(const std::string& path) const;
+  std::optional<std::string> DoubtOfCount(const std::string& path) const;
+  std::optional<std::string> DoubtOfAngles(const std::string& path) const;
   void AddReadings(const CarmenScan& scan, double no_return_m, int line_number);
   void AddHit(double range_m, int line_number);
   void AddPoses(const CarmenScan& scan, int line_number);
