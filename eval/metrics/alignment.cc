@@ -16,9 +16,11 @@ struct Fit {
   double scale = 1.0;
 };
 
+enum class Scale { kKept, kFitted };
+
 // Umeyama 1991: the least-squares similarity from the estimate's positions to the reference's.
 template <int kDim>
-std::optional<Fit<kDim>> Umeyama(const std::vector<PosePair>& pairs, bool with_scale) {
+std::optional<Fit<kDim>> Umeyama(const std::vector<PosePair>& pairs, Scale scale) {
   using Vector = Eigen::Matrix<double, kDim, 1>;
   using Matrix = Eigen::Matrix<double, kDim, kDim>;
   const auto n = static_cast<double>(pairs.size());
@@ -46,20 +48,20 @@ std::optional<Fit<kDim>> Umeyama(const std::vector<PosePair>& pairs, bool with_s
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) signs(kDim - 1) = -1.0;
   Fit<kDim> fit;
   fit.rotation = svd.matrixU() * signs.asDiagonal() * svd.matrixV().transpose();
-  if (with_scale) fit.scale = svd.singularValues().dot(signs) / variance_x;
+  if (scale == Scale::kFitted) fit.scale = svd.singularValues().dot(signs) / variance_x;
   fit.translation = mean_y - fit.scale * (fit.rotation * mean_x);
   return fit;
 }
 
 std::optional<Similarity> AlignSe2(const std::vector<PosePair>& pairs) {
-  const auto fit = Umeyama<2>(pairs, false);
+  const auto fit = Umeyama<2>(pairs, Scale::kKept);
   if (!fit) return std::nullopt;
   const double yaw_rad = std::atan2(fit->rotation(1, 0), fit->rotation(0, 0));
   return Similarity{Lift({fit->translation.x(), fit->translation.y(), yaw_rad}), 1.0};
 }
 
-std::optional<Similarity> AlignSpatially(const std::vector<PosePair>& pairs, bool with_scale) {
-  const auto fit = Umeyama<3>(pairs, with_scale);
+std::optional<Similarity> AlignSpatially(const std::vector<PosePair>& pairs, Scale scale) {
+  const auto fit = Umeyama<3>(pairs, scale);
   if (!fit) return std::nullopt;
   return Similarity{{Eigen::Quaterniond(fit->rotation).normalized(), fit->translation}, fit->scale};
 }
@@ -80,9 +82,9 @@ std::optional<Similarity> Align(const std::vector<PosePair>& pairs, Alignment al
     case Alignment::kSe2:
       return AlignSe2(pairs);
     case Alignment::kSe3:
-      return AlignSpatially(pairs, false);
+      return AlignSpatially(pairs, Scale::kKept);
     case Alignment::kSim3:
-      return AlignSpatially(pairs, true);
+      return AlignSpatially(pairs, Scale::kFitted);
   }
   Broken("an alignment is one of the ways");
 }

@@ -20,10 +20,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool ShapesMap(const std::string& key) {
+  return key == "mapper.method" || key.starts_with("mapper.grid.");
+}
+
 // The floor's height belongs to the room, not to the mapper's settings.
-bool ShapesMap(const std::string& key, bool images) {
-  if (key == "mapper.method" || key.starts_with("mapper.grid.")) return true;
-  return images && key.starts_with("mapper.scan.") && key != "mapper.scan.floor_z_m";
+bool ShapesMapOfImages(const std::string& key) {
+  return ShapesMap(key) || (key.starts_with("mapper.scan.") && key != "mapper.scan.floor_z_m");
 }
 
 // The part of run.yaml that is checked here.
@@ -37,7 +40,7 @@ struct MapperSettings {
 void RequirePossible(const Config& run) {
   Config known;
   for (const std::string& key : KeyPathsOf(MapperSettings{})) {
-    if (!ShapesMap(key, true) || !run.Has(key) || run.HasList(key)) continue;
+    if (!ShapesMapOfImages(key) || !run.Has(key) || run.HasList(key)) continue;
     known.Set(key, run.Text(key), run.PlaceOfKey(key));
   }
   MapperSettings settings;
@@ -71,7 +74,8 @@ std::optional<std::string> DoubtOfPrior(const std::string& folder, const MapperO
   const Config now = Config::FromText(ToYaml(settings), "settings");
   std::vector<std::string> there, here;
   for (const std::string& key : KeyPathsOf(settings)) {
-    if (!ShapesMap(key, images) || !prior.Has(key)) continue;
+    const bool shapes = images ? ShapesMapOfImages(key) : ShapesMap(key);
+    if (!shapes || !prior.Has(key)) continue;
     const std::string made_with = SettingOf(prior, key);
     const std::string value = SettingOf(now, key);
     if (made_with == value) continue;

@@ -255,8 +255,14 @@ CarmenLine ParseRobotLaser(Tokens& tokens) {
   return scan;
 }
 
-CarmenDamage OfRawLine(CarmenDamage damage, bool is_scan) {
-  damage.is_scan = is_scan;
+CarmenDamage OfRawScan(CarmenDamage damage) {
+  damage.is_scan = true;
+  damage.is_raw = true;
+  return damage;
+}
+
+CarmenDamage OfOdometry(CarmenDamage damage) {
+  damage.is_scan = false;
   damage.is_raw = true;
   return damage;
 }
@@ -267,7 +273,7 @@ CarmenLine ParseRawLaser(Tokens& tokens) {
   CarmenRawScan raw;
   auto damage = ReadAngledReadings(tokens, kName, raw.scan);
   if (!damage) damage = ReadEnd(tokens, kName, 0, raw.scan.stamp_s);
-  if (damage) return OfRawLine(std::move(*damage), true);
+  if (damage) return OfRawScan(std::move(*damage));
   return raw;
 }
 
@@ -276,10 +282,10 @@ CarmenLine ParseOdometry(Tokens& tokens) {
   constexpr std::string_view kName = "ODOM";
   CarmenOdometry odometry;
   const auto robot = ReadPose(tokens);
-  if (!robot) return OfRawLine(Damage(kName, kDamagedPose), false);
+  if (!robot) return OfOdometry(Damage(kName, kDamagedPose));
   odometry.odom_from_robot = robot->pose;
   if (auto damage = ReadEnd(tokens, kName, 3, odometry.stamp_s)) {
-    return OfRawLine(std::move(*damage), false);
+    return OfOdometry(std::move(*damage));
   }
   return odometry;
 }

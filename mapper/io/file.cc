@@ -85,8 +85,10 @@ int FailureToSync(const std::string& path) {
   return failure == EIO || IsDiskFull(failure) ? failure : 0;
 }
 
+enum class Until { kWritten, kOnDisk };
+
 void WriteBesideAndRename(const std::string& path, const std::function<void(std::ostream&)>& write,
-                          bool to_disk) {
+                          Until until) {
   const std::string temporary = TemporaryName(path);
   const EndTask remove_half([&temporary] {
     std::error_code ignored;
@@ -99,13 +101,13 @@ void WriteBesideAndRename(const std::string& path, const std::function<void(std:
     stream.close();
     if (!stream) FailWriting(path, errno);
   }
-  if (to_disk) {
+  if (until == Until::kOnDisk) {
     if (const int failure = FailureToSync(temporary)) FailWriting(path, failure);
   }
   std::error_code error;
   fs::rename(temporary, path, error);
   if (error) FailWriting(path, error.value());
-  if (to_disk) SyncToDisk(fs::absolute(path).parent_path().string());
+  if (until == Until::kOnDisk) SyncToDisk(fs::absolute(path).parent_path().string());
 }
 
 }  // namespace
@@ -161,14 +163,14 @@ void WriteFileToDisk(const std::string& path, std::string_view content) {
 }
 
 void WriteFile(const std::string& path, const std::function<void(std::ostream&)>& write) {
-  WriteBesideAndRename(path, write, false);
+  WriteBesideAndRename(path, write, Until::kWritten);
 }
 
 void WriteFileToDisk(const std::string& path, const std::function<void(std::ostream&)>& write) {
   const fs::path target = fs::absolute(path);
   RemoveHalves(target.parent_path().string(),
                [&target](const std::string& name) { return name == target.filename(); });
-  WriteBesideAndRename(path, write, true);
+  WriteBesideAndRename(path, write, Until::kOnDisk);
 }
 
 void SyncToDisk(const std::string& path) {
