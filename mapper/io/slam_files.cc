@@ -50,20 +50,17 @@ std::string RangesOf(const FrameNames& frames, const Trajectory& poses) {
 }
 
 // The error for a file without a pose at the stamp of any mapped frame.
-InputError NoSharedStamps(const std::string& path, double max_difference_s,
-                          const FrameNames& frames, const Trajectory& poses) {
-  return {path, fmt::format("no pose within {} s of any image: {}", max_difference_s,
-                            RangesOf(frames, poses))};
+void RequireShared(bool any_shared, const Trajectory& poses, const std::string& path,
+                   const FrameNames& frames, double max_difference_s) {
+  if (any_shared || frames.stamps_s.empty()) return;
+  throw InputError(path, fmt::format("no pose within {} s of any image: {}", max_difference_s,
+                                     RangesOf(frames, poses)));
 }
 
-// Warns if few frames have a pose: the poses may have another clock or unit or be of another
-// recording; or if each second has none.
-void WarnOfFew(std::size_t with_pose, const FrameNames& frames, const Trajectory& poses,
-               const std::string& path, bool each_second, std::vector<std::string>& warnings) {
-  const std::size_t count = frames.CountInPart();
-  if (!MostLackPoses(with_pose, count) && !each_second) return;
-  warnings.push_back(fmt::format("{}: gives {} of {} frames a pose: {}", path, with_pose, count,
-                                 RangesOf(frames, poses)));
+std::string FewText(std::size_t with_pose, const FrameNames& frames, const Trajectory& poses,
+                    const std::string& path) {
+  return fmt::format("{}: gives {} of {} frames a pose: {}", path, with_pose, frames.CountInPart(),
+                     RangesOf(frames, poses));
 }
 
 // Assigns poses to input frames, to each the nearest. Poses without a frame are counted in the
@@ -167,14 +164,6 @@ void SayCorrections(const SlamFilePaths& paths, const std::vector<int>& frames,
   }
 }
 
-std::size_t PosedOf(const FramePart& part, const std::vector<SlamPose>& live) {
-  std::size_t posed = 0;
-  for (std::size_t i = part.begin; i < part.EndAmong(live.size()); ++i) {
-    posed += live[i].slam_from_camera ? 1 : 0;
-  }
-  return posed;
-}
-
 // The poses, which may be of no frame, with the epochs of the frames.
 std::vector<SlamPose> WithEpochs(const Trajectory& poses, const std::vector<SlamPose>& frames) {
   std::vector<SlamPose> all;
@@ -229,6 +218,65 @@ void KeepLoopsOf(const FramePart& part, SlamInput& input) {
       fmt::format("{} with an end outside the part, left out", Counted(left_out, "loop closure")));
 }
 
+std::vector<FramedPose> FramedLive(const Trajectory& live, const std::string& path,
+                                   const FrameNames& frames, const SlamReading& reading,
+                                   std::vector<std::string>& warnings) {
+  std::vector<std::string> unsaid;  // dropped: poses of no frame are needed for interpolation
+  auto framed = PosesByFrame(live, frames, reading.max_difference_s, path,
+                             reading.interpolate ? unsaid : warnings);
+  if (!reading.interpolate) {
+    RequireShared(!framed.empty(), live, path, frames, reading.max_difference_s);
+  }
+  return framed;
+}
+
+// SLAM's final poses. Warns if few frames have one: they may have another clock or unit or be of
+// another recording.
+Trajectory ReadFinal(const std::string& path, const FrameNames& frames, double max_difference_s,
+                     std::vector<std::string>& warnings) {
+  Trajectory final = ReadPoseFile(path, frames, warnings);
+  const auto revised = PosesByFrame(final, frames, max_difference_s, path, warnings);
+  RequireShared(!revised.empty(), final, path, frames, max_difference_s);
+  const auto of_part = static_cast<std::size_t>(
+      std::count_if(revised.begin(), revised.end(),
+                    [&](const FramedPose& pose) { return frames.part.Has(pose.frame); }));
+  if (MostLackPoses(of_part, frames.CountInPart())) {
+    warnings.push_back(FewText(of_part, frames, final, path));
+  }
+  return final;
+}
+
+// Starts the epochs of corrections that only the poses show, unless `epochs_known`, and
+// interpolates, if wanted. `poses`: the live ones as given.
+void FinishLive(const Trajectory& poses, const SlamFilePaths& paths, const SlamReading& reading,
+                bool epochs_known, SlamInput& input) {
+  SlamOutput& slam = input.slam;
+  const Trajectory revised = paths.final.empty() ? Trajectory{} : slam.final;
+  if (reading.interpolate) {
+    // A correction is sought in the poses as they were given: spread over the frames between two of
+    // them it looks like motion.
+    std::vector<SlamPose> all = WithEpochs(poses, slam.live);
+    if (!epochs_known) StartCorrections(paths, revised, all, input.warnings);
+    slam.live = InterpolatedFrames(all, reading, std::move(slam.live));
+  } else if (!epochs_known) {
+    StartCorrections(paths, revised, slam.live, input.warnings);
+  }
+}
+
+// Requires that a frame of the part has a pose. A warning if few have one, or each second has none.
+std::optional<std::string> DoubtOfPosed(const std::vector<SlamPose>& live, const Trajectory& poses,
+                                        const std::string& path, const FrameNames& frames,
+                                        double max_difference_s) {
+  std::vector<bool> has_pose;
+  for (std::size_t i = frames.part.begin; i < frames.part.EndAmong(live.size()); ++i) {
+    has_pose.push_back(live[i].slam_from_camera.has_value());
+  }
+  const auto posed = static_cast<std::size_t>(std::count(has_pose.begin(), has_pose.end(), true));
+  RequireShared(posed > 0, poses, path, frames, max_difference_s);
+  if (!MostLackPoses(posed, frames.CountInPart()) && !LacksEachSecondPose(has_pose)) return {};
+  return FewText(posed, frames, poses, path);
+}
+
 }  // namespace
 
 std::string LoopsText(const SlamOutput& output) {
@@ -277,54 +325,18 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   if (!paths.loops.empty()) events = TakeEvents(paths.loops, frames, max_difference_s, input);
   const std::string text = ReadTextFile(paths.live);
   const Trajectory live = ParsePoses(text, paths.live, frames, input.warnings);
-  std::vector<std::string> unsaid;  // dropped: poses of no frame are needed for interpolation
-  const auto framed = PosesByFrame(live, frames, max_difference_s, paths.live,
-                                   reading.interpolate ? unsaid : input.warnings);
-  const auto require = [&](bool any, const std::string& path, const Trajectory& poses) {
-    if (!any && !frames.stamps_s.empty()) {
-      throw NoSharedStamps(path, max_difference_s, frames, poses);
-    }
-  };
-  if (!reading.interpolate) require(!framed.empty(), paths.live, live);
-  slam.live = LivePoses(framed, events.events, frames.stamps_s);
-  slam.final = live;
-  if (!paths.final.empty()) {
-    slam.final = ReadPoseFile(paths.final, frames, input.warnings);
-    const auto revised =
-        PosesByFrame(slam.final, frames, max_difference_s, paths.final, input.warnings);
-    require(!revised.empty(), paths.final, slam.final);
-    const auto of_part = std::count_if(revised.begin(), revised.end(), [&](const FramedPose& pose) {
-      return frames.part.Has(pose.frame);
-    });
-    WarnOfFew(static_cast<std::size_t>(of_part), frames, slam.final, paths.final, false,
-              input.warnings);
-  }
-  const bool epochs_known = events.kind == kOwnEvents;
-  const Trajectory revised = paths.final.empty() ? Trajectory{} : slam.final;
+  slam.live = LivePoses(FramedLive(live, paths.live, frames, reading, input.warnings),
+                        events.events, frames.stamps_s);
+  slam.final =
+      paths.final.empty() ? live : ReadFinal(paths.final, frames, max_difference_s, input.warnings);
   const std::vector<SlamPose> before = slam.live;
-  if (reading.interpolate) {
-    // A correction is sought in the poses as they were given: spread over the frames between two of
-    // them it looks like motion.
-    std::vector<SlamPose> all = WithEpochs(live, slam.live);
-    if (!epochs_known) StartCorrections(paths, revised, all, input.warnings);
-    slam.live = InterpolatedFrames(all, reading, std::move(slam.live));
-  } else if (!epochs_known) {
-    StartCorrections(paths, revised, slam.live, input.warnings);
-  }
-  if (!epochs_known) {
-    SayCorrections(paths, Corrected(before, slam.live), frames.part, input);
-  }
+  const bool epochs_known = events.kind == kOwnEvents;
+  FinishLive(live, paths, reading, epochs_known, input);
+  if (!epochs_known) SayCorrections(paths, Corrected(before, slam.live), frames.part, input);
   KeepLoopsOf(frames.part, input);
-  const std::size_t posed = PosedOf(frames.part, slam.live);
-  require(posed > 0, paths.live, live);
-  std::vector<bool> has_pose;
-  for (std::size_t i = frames.part.begin; i < frames.part.EndAmong(slam.live.size()); ++i) {
-    has_pose.push_back(slam.live[i].slam_from_camera.has_value());
-  }
+  const auto doubt = DoubtOfPosed(slam.live, live, paths.live, frames, max_difference_s);
   // Matrices have the stamps of the frames that they were paired with.
-  if (!HoldsMatrices(text)) {
-    WarnOfFew(posed, frames, live, paths.live, LacksEachSecondPose(has_pose), input.warnings);
-  }
+  if (doubt && !HoldsMatrices(text)) input.warnings.push_back(*doubt);
   return input;
 }
 

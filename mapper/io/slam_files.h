@@ -3,7 +3,7 @@
 //
 // loops.csv has a header line and one row an event, ordered by frame:
 //   kind                  loop | relocalisation
-// frame the input frame, counted from 0, with whose pose the event takes effect
+//   frame                 the input frame, counted from 0, with whose pose the event takes effect
 //   epoch                 SLAM's epoch from this frame on; unchanged when it did not correct itself
 //   first, second         the frames a loop joins; empty for a relocalisation, as all that follows
 //   tx_m .. qw            first_from_second, the measured relative camera pose
