@@ -190,9 +190,7 @@ double LimitOf(const EvalTrajectoryArguments& arguments) {
   return arguments.convention == "tum" ? kTumMaxStampDifferenceS : kMaxStampDifferenceS;
 }
 
-}  // namespace
-
-void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
+void RequireSoundArguments(const EvalTrajectoryArguments& arguments) {
   RequireInputsKept(arguments.errors, "--errors", {arguments.reference, arguments.estimate});
   if (!arguments.errors.empty()) RequireNewFile(arguments.errors, arguments.force);
   if (arguments.force && arguments.errors.empty()) {
@@ -201,6 +199,10 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   for (const std::string& file : {arguments.reference, arguments.estimate}) {
     RequireOneResultAround(file);
   }
+}
+
+// Reads both files and moves the estimate's stamps by the offset given.
+TrajectoryFiles ReadShifted(const EvalTrajectoryArguments& arguments) {
   TrajectoryFiles files = ReadTrajectoryFiles(arguments.reference, arguments.estimate);
   Warn(files.warnings);
   if (files.by_row && arguments.time_offset_s != 0.0) {
@@ -208,33 +210,49 @@ void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
   } else {
     for (StampedPose& pose : files.estimate) pose.stamp_s += arguments.time_offset_s;
   }
+  return files;
+}
+
+// Pairs with a score; throws InputError if there are none.
+Paired PairsWithScore(const TrajectoryFiles& files, const EvalTrajectoryArguments& arguments) {
   const double limit_s = LimitOf(arguments);
-  const Paired paired =
+  Paired paired =
       files.by_row ? PairByRows(files)
                    : PairByStamps(files.reference, files.estimate, limit_s, arguments.convention);
-  const std::optional<TrajectoryScore>& score = paired.score;
-  if (!score) {
-    throw InputError(
-        arguments.estimate,
-        files.by_row ? fmt::format("has no pose in a row in which {} has one", arguments.reference)
-                     : NoSharedStampText(files, limit_s, arguments));
-  }
+  if (paired.score) return paired;
+  throw InputError(
+      arguments.estimate,
+      files.by_row ? fmt::format("has no pose in a row in which {} has one", arguments.reference)
+                   : NoSharedStampText(files, limit_s, arguments));
+}
+
+void WarnOfPaired(const Paired& paired, const TrajectoryFiles& files,
+                  const EvalTrajectoryArguments& arguments) {
   if (files.by_row && arguments.max_difference_s >= 0.0) {
     Warn({"--max-difference: has no effect because rows pair in order"});
   }
-  Warn(DoubtsOf(*score, paired.pairs, files, arguments));
+  Warn(DoubtsOf(*paired.score, paired.pairs, files, arguments));
   if (!files.by_row) {
     Warn(DoubtsOfClock(files.reference, files.estimate, {arguments.reference, arguments.estimate},
                        arguments.time_offset_s));
   }
+}
+
+}  // namespace
+
+void EvalTrajectory(const EvalTrajectoryArguments& arguments) {
+  RequireSoundArguments(arguments);
+  const TrajectoryFiles files = ReadShifted(arguments);
+  const Paired paired = PairsWithScore(files, arguments);
+  WarnOfPaired(paired, files, arguments);
   if (!arguments.errors.empty()) {
     WriteFile(arguments.errors, ErrorsCsv(paired.pairs, files.has_seconds));
   }
   if (arguments.json) {
-    fmt::print("{}", MetricsJson({{"est", score}}, nullptr));
+    fmt::print("{}", MetricsJson({{"est", paired.score}}, nullptr));
   } else {
-    PrintTable(*score);
-    PrintDrift(*score);
+    PrintTable(*paired.score);
+    PrintDrift(*paired.score);
   }
 }
 
