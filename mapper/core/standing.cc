@@ -14,6 +14,7 @@ constexpr double kSeenToLeaveM = 0.05;
 // And for so many frames in a row, if SLAM's poses ever moved. Measured: docs/tried.md, "People
 // around a robot that stands".
 constexpr int kSeenFrames = 5;
+
 bool IsFarther(const Pose2& motion, double limit_m) {
   return motion.vector().cwiseQuotient(kMotionUnit).norm() > limit_m;
 }

@@ -14,9 +14,12 @@ constexpr int kGridColumns = 40, kGridRows = 30;
 constexpr float kSameBearingRad = 1e-4F;
 
 // A view that changed by less than this, and noise, for so long is that of a sensor that stands.
+// Chosen: a fifth of what motion is of a log, half of that of live frames.
 constexpr double kStillM = 0.01;
 constexpr double kStandsS = 1.0;
-// A share of what is seen that is farther than before was uncovered. Chosen.
+// A share of what is seen that is farther than before was uncovered. Chosen: with 0.1 three people
+// before a robot uncovered as much for 55 of 1,260 scans of one log (docs/tried.md, "Poses that
+// stay").
 constexpr double kUncoveredShare = 0.15;
 
 bool IsThere(float z_m) { return std::isfinite(z_m) && z_m > 0.0F; }

@@ -17,8 +17,10 @@ constexpr double kBegunShare = 0.5;
 // Fewer readings in common tell nothing.
 constexpr std::size_t kFewReadings = 20;
 
-// The median of such differences without their signs; 0 if they are few.
+// The median of the differences of distances (ViewSample::DifferencesM()), without their signs; 0
+// if they are fewer than kFewReadings.
 double MedianChangeM(std::vector<double> differences_m);
+
 // Tells whoever comes before a sensor that stands from its motion, where it gives one pose again
 // and again. They only hide what it saw; motion uncovers something as well.
 class StillView {

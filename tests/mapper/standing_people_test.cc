@@ -66,7 +66,7 @@ double WorstErrorAmong(const std::vector<Visitor>& visitors, std::uint32_t seed)
     frame.scan = std::make_shared<const Scan>(
         ScanOf(world, truth, laser, 4, static_cast<std::uint32_t>(i) + 1000 * seed));
     const FrameReport report = mapper.AddFrame(frame);
-    const Pose2 off = Between(truth, BaseOf(*report.map_from_camera));
+    const Pose2 off = Between(truth, BaseOf(report.map_from_camera.value()));
     worst_m = std::max(worst_m, off.translation().norm());
   }
   return worst_m;
