@@ -43,6 +43,7 @@ RunRecord RecordOf(const MapRequest& request, const MappingRun& run, const std::
                    const std::vector<std::string>& warnings) {
   MapSettings settings = request.settings;
   settings.sequence.camera = FromEverywhere(settings.sequence.camera);
+  settings.sequence.camera_mount = FromEverywhere(settings.sequence.camera_mount);
   RunRecord record;
   for (const std::string& warning : warnings) record.warnings.push_back(Printable(warning));
   record.settings = ToYaml(settings);

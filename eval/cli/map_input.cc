@@ -51,11 +51,11 @@ std::optional<SlamInput> ReadSlam(const MapArguments& arguments, const SequenceO
     }
     return {};
   }
-  return ReadSlamFiles(
-      {arguments.poses, arguments.final_poses, arguments.loops},
-      SequenceFrames(arguments.input, options),
-      {options.recording.max_stamp_difference_s, options.recording.interpolate_poses,
-       options.recording.max_interpolation_gap_s});
+  SlamReading reading{options.recording.max_stamp_difference_s, options.recording.interpolate_poses,
+                      options.recording.max_interpolation_gap_s};
+  if (!options.camera_mount.empty()) reading.mount = ReadCameraMount(options.camera_mount);
+  return ReadSlamFiles({arguments.poses, arguments.final_poses, arguments.loops},
+                       SequenceFrames(arguments.input, options), reading);
 }
 
 // The floor's height as written by the program that rendered the folder.

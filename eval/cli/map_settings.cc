@@ -202,9 +202,10 @@ MapRequest ReadMapRequest(const MapArguments& given) {
 std::vector<std::string> InputsOf(const MapArguments& given, const MapRequest& request) {
   namespace fs = std::filesystem;
   const MapArguments& named = request.arguments;
-  std::vector<std::string> inputs = {given.input, named.input,
-                                     named.poses, named.final_poses,
-                                     named.loops, request.settings.sequence.camera};
+  const SequenceOptions& sequence = request.settings.sequence;
+  std::vector<std::string> inputs = {given.input,          named.input, named.poses,
+                                     named.final_poses,    named.loops, sequence.camera,
+                                     sequence.camera_mount};
   if (!named.map.empty()) {
     for (const char* name : {"run.yaml", "scans.bin", "matched.bin", "matched.next.bin"}) {
       inputs.push_back((fs::path(named.map) / name).string());

@@ -32,8 +32,8 @@ struct MapSettings {
 struct MapRequest {
   MapArguments arguments;  // with files from a run.yaml where the command line names none
   Config config;
-  // With absolute paths, so that run.yaml is valid from any folder; except sequence.camera, which
-  // is as given until it has been read, for messages.
+  // With absolute paths, so that run.yaml is valid from any folder; except sequence.camera and
+  // camera_mount, which are as given until they have been read, for messages.
   MapSettings settings;
   // The base's initial pose in the finished map, if given.
   std::optional<Pose2> start;

@@ -99,12 +99,12 @@ std::string RemedyOf(const PoseDoubt& doubt) {
     case PoseReading::kPitched:
       return fmt::format(
           "with a camera that looks {} the poses' z axis; they must be the camera's own "
-          "(formats.md, \"Poses of a robot's base\")",
+          "(formats.md, \"Poses of an IMU or a robot\")",
           PitchOf(doubt));
     case PoseReading::kPitchedBodyAxes:
       return fmt::format(
           "with poses of axes x forward, y left, z up, the camera looking {} x; they must be the "
-          "camera's x right, y down, z forward (formats.md, \"Poses of a robot's base\")",
+          "camera's x right, y down, z forward (formats.md, \"Poses of an IMU or a robot\")",
           PitchOf(doubt));
     case PoseReading::kFocal:
       return fmt::format(

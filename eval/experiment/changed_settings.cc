@@ -51,6 +51,7 @@ bool IsKnownElsewhere(const std::string& key, bool noise_of_profile) {
                                               "mapper.fusion.mode",
                                               "mapper.fusion.gain",
                                               "sequence.camera",
+                                              "sequence.camera_mount",
                                               "mapper.scan.floor_z_m"};
   constexpr const char* kNoise = "mapper.fusion.slam_noise.";
   return kKeys.contains(key) ||

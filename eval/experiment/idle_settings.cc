@@ -239,7 +239,9 @@ IdleSettingList IdleSettings(const SequenceOptions& options, SequenceFormat form
   const std::string recording = "sequence.recording.";
   const auto add = [&](const std::string& key) { idle.push_back({key, input_is}); };
   if (format == SequenceFormat::kCarmen) {
-    for (const char* key : {"sequence.camera", "sequence.world_up", "mapper.scan"}) add(key);
+    for (const char* key :
+         {"sequence.camera", "sequence.camera_mount", "sequence.world_up", "mapper.scan"})
+      add(key);
     for (const StatedKey& stated : StatedKeys(Config::FromText(ToYaml(RecordingOptions{}), ""))) {
       const bool is_used = with_loops && stated.key == "max_stamp_difference_s";
       if (!is_used) add(recording + stated.key);

@@ -68,8 +68,8 @@ TrajectoryFiles ReadTrajectoryFiles(const std::string& reference, const std::str
   const bool estimate_matrices = HoldsMatrices(estimate_text);
   files.by_row = reference_matrices || estimate_matrices;
   if (!files.by_row) {
-    files.reference = ParsePoses(reference_text, reference, {}, files.warnings);
-    files.estimate = ParsePoses(estimate_text, estimate, {}, files.warnings);
+    files.reference = ParsePoses(reference_text, reference, {}, files.warnings).poses;
+    files.estimate = ParsePoses(estimate_text, estimate, {}, files.warnings).poses;
     return files;
   }
   const Rows of_reference = reference_matrices

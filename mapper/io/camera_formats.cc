@@ -9,6 +9,7 @@
 
 #include "mapper/core/error.h"
 #include "mapper/io/camera_keys.h"
+#include "mapper/io/camera_mount.h"
 #include "mapper/io/camera_values.h"
 #include "mapper/io/config.h"
 #include "mapper/io/damage.h"
@@ -130,24 +131,18 @@ CameraDescription FromNumbers(const std::string& text, const std::string& place)
   return camera;
 }
 
-bool StartsWithNumber(const std::string& text) {
-  const std::vector<TextRow> rows = SplitRows(std::string_view(text).substr(0, 4096));
-  return !rows.empty() && ParseNumber(rows.front().fields.front()).has_value();
-}
-
 CameraDescription ParseCamera(const std::string& text, const std::string& place) {
   if (text.empty()) throw InputError(place, "is empty, must describe a camera");
-  if (StartsWithNumber(text)) return FromNumbers(text, place);
+  if (BeginsWithNumber(text)) return FromNumbers(text, place);
   if (text.find("Camera.fx:") != std::string::npos ||
       text.find("Camera1.fx:") != std::string::npos) {
     return FromOrbSlam(text, place);
   }
-  // OpenCV writes a directive that YAML 1.2 does not know.
-  const bool directive = text.starts_with("%YAML");
-  const Config config = Config::FromText(
-      directive ? text.substr(std::min(text.find('\n'), text.size())) : text, place);
-  const auto camera = CameraByKeys(config);
-  return camera ? *camera : FromOwn(config, text, place);
+  const Config config = ConfigOfOthers(text, place);
+  auto camera = CameraByKeys(config);
+  if (!camera) return FromOwn(config, text, place);
+  camera->mount_key = MountKeyIn(config);
+  return *camera;
 }
 
 }  // namespace
@@ -182,6 +177,7 @@ CameraDescription ReadCameraDescription(const std::string& path,
                                         std::vector<std::string>& warnings) {
   const std::string text = ReadTextFile(path);
   CameraDescription camera = ParseCameraDescription(text, path);
+  camera.path = path;
   // What is in brackets cannot be cut.
   if (!text.ends_with('}')) WarnOfCut(path, text, warnings);
   if (!camera.taken.empty()) warnings.push_back(path + ": " + camera.taken);

@@ -19,7 +19,9 @@ struct CameraDescription {
   // fy is given negative (ICL-NUIM): the camera's y axis points up. `file` holds it positive, and
   // poses are to be turned by FlipY.
   bool y_up = false;
-  std::string taken = {};  // what was taken for granted; empty if nothing was
+  std::string path = {};       // of the file, if it was read from one
+  std::string mount_key = {};  // where it states the camera's place on a body, if it does
+  std::string taken = {};      // what was taken for granted; empty if nothing was
 };
 
 // Our camera.yaml, those of camera_keys.h, ORB-SLAM2/3 settings, or a text with fx fy cx cy or with

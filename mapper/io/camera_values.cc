@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -9,6 +10,18 @@
 #include "mapper/io/number_rows.h"
 
 namespace depthgrid {
+
+Config ConfigOfOthers(const std::string& text, const std::string& place) {
+  // Without its line end the directive leaves the lines' numbers as they are.
+  const bool directive = text.starts_with("%YAML");
+  return Config::FromText(directive ? text.substr(std::min(text.find('\n'), text.size())) : text,
+                          place);
+}
+
+bool BeginsWithNumber(const std::string& text) {
+  const std::vector<TextRow> rows = SplitRows(std::string_view(text).substr(0, 4096));
+  return !rows.empty() && ParseNumber(rows.front().fields.front()).has_value();
+}
 
 double NumberAt(const Config& config, const std::string& key) {
   const auto values = config.List(key);
@@ -19,17 +32,21 @@ double NumberAt(const Config& config, const std::string& key) {
   return *number;
 }
 
-std::vector<double> NumbersAt(const Config& config, const std::string& key) {
+std::vector<double> NumbersOf(const std::vector<std::string>& items, const std::string& key,
+                              const std::string& place) {
   std::vector<double> numbers;
-  for (const std::string& item : config.List(key)) {
+  for (const std::string& item : items) {
     const auto number = ParseNumber(item);
     if (!number || !std::isfinite(*number)) {
-      throw InputError(config.PlaceOfKey(key),
-                       fmt::format("'{}' holds {}, must be a list of numbers", key, item));
+      throw InputError(place, fmt::format("'{}' holds {}, must be a list of numbers", key, item));
     }
     numbers.push_back(*number);
   }
   return numbers;
+}
+
+std::vector<double> NumbersAt(const Config& config, const std::string& key) {
+  return NumbersOf(config.List(key), key, config.PlaceOfKey(key));
 }
 
 int PixelsOf(double number, std::string_view key, const std::string& place) {

@@ -10,9 +10,18 @@
 
 namespace depthgrid {
 
+// The keys of a file of another program; OpenCV begins its own with a directive that YAML 1.2 does
+// not know.
+Config ConfigOfOthers(const std::string& text, const std::string& place);
+// Whether a text holds rows of numbers rather than keys.
+bool BeginsWithNumber(const std::string& text);
+
 // A finite number, or finite numbers, at a key path.
 double NumberAt(const Config& config, const std::string& key);
 std::vector<double> NumbersAt(const Config& config, const std::string& key);
+// The finite numbers of a list's elements; `key` and `place` name it.
+std::vector<double> NumbersOf(const std::vector<std::string>& items, const std::string& key,
+                              const std::string& place);
 // A whole number of pixels.
 int WholeAt(const Config& config, const std::string& key);
 int PixelsOf(double number, std::string_view key, const std::string& place);

@@ -1,9 +1,12 @@
 #include "mapper/io/depth_sequence.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <utility>
 
 #include "mapper/core/error.h"
+#include "mapper/io/camera_mount.h"
 #include "mapper/io/frame_folder.h"
 #include "mapper/io/icl_folder.h"
 #include "mapper/io/leave_out_body.h"
@@ -29,6 +32,25 @@ CameraDescription CameraOfTum(const std::string& folder, const std::string& give
   return camera;
 }
 
+void TakeCamera(const CameraDescription& camera, const SequenceOptions& options,
+                DepthSequence& sequence) {
+  sequence.recording.camera = camera.file;
+  sequence.y_up = camera.y_up;
+  if (camera.mount_key.empty() || !options.camera_mount.empty()) return;
+  sequence.notes.push_back(fmt::format(
+      "poses are taken for the camera's; if they are a body's, such as the IMU's, --set "
+      "sequence.camera_mount={} takes the camera's place on it from {}",
+      camera.path, camera.mount_key));
+}
+
+// Makes the folder's own poses, if they are a body's, those of the camera.
+void MountCamera(const std::string& path, DepthSequence& sequence) {
+  const CameraMount mount = ReadCameraMount(path);
+  sequence.slam = OnBody(std::move(sequence.slam), mount);
+  sequence.body_from_camera = mount.body_from_camera;
+  sequence.notes.push_back(Said(mount));
+}
+
 DepthSequence TumSequence(const std::string& path, const SequenceOptions& options,
                           const std::optional<SlamOutput>& slam) {
   DepthSequence sequence;
@@ -48,8 +70,7 @@ DepthSequence TumSequence(const std::string& path, const SequenceOptions& option
   }
   CameraDescription camera = CameraOfTum(path, options.camera, sequence.recording.warnings);
   CompleteSize(sequence.recording, camera);
-  sequence.recording.camera = camera.file;
-  sequence.y_up = camera.y_up;
+  TakeCamera(camera, options, sequence);
   sequence.reader = PngDepthReader(DepthFormatOf(sequence.recording.camera, options.recording));
   return sequence;
 }
@@ -63,9 +84,8 @@ DepthSequence IclSequence(const std::string& path, const SequenceOptions& option
   const CameraDescription camera =
       options.camera.empty() ? IclCamera(path, sequence.recording.warnings)
                              : ReadCameraDescription(options.camera, sequence.recording.warnings);
-  sequence.y_up = camera.y_up;
+  TakeCamera(camera, options, sequence);
   sequence.usual_up = camera.y_up ? WorldUp::kMinusY : WorldUp::kY;
-  sequence.recording.camera = camera.file;
   sequence.reader = IclDepthReader(sequence.recording, options.recording);
   return sequence;
 }
@@ -79,8 +99,7 @@ DepthSequence FrameSequence(const std::string& path, const SequenceOptions& opti
   DepthSequence sequence;
   sequence.slam = slam ? *slam : OwnPoses(listed);
   sequence.recording = std::move(listed.recording);
-  sequence.recording.camera = camera.file;
-  sequence.y_up = camera.y_up;
+  TakeCamera(camera, options, sequence);
   sequence.reader = PngDepthReader(DepthFormatOf(camera.file, options.recording));
   return sequence;
 }
@@ -109,6 +128,13 @@ DepthSequence ReadDepthSequence(const std::string& path, SequenceFormat format,
                                 const std::optional<SlamOutput>& slam) {
   DepthSequence sequence = ReadAsWritten(path, format, options, slam);
   sequence.recording.poses_given = slam.has_value();
+  if (sequence.y_up && !options.camera_mount.empty()) {
+    throw SettingError("sequence.camera_mount",
+                       fmt::format("is {}, must be empty where fy is negative: such poses are of a "
+                                   "left-handed camera",
+                                   options.camera_mount));
+  }
+  if (!slam && !options.camera_mount.empty()) MountCamera(options.camera_mount, sequence);
   if (sequence.y_up) sequence.slam = FlipY(std::move(sequence.slam));
   if (options.recording.drop_body) internal::LeaveOutBody(options.recording, sequence);
   return sequence;

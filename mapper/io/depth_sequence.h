@@ -20,6 +20,7 @@ struct DepthSequence {
   SlamOutput slam;
   WorldUp usual_up = WorldUp::kZ;
   bool y_up = false;               // the poses were turned by FlipY
+  Pose3 body_from_camera;          // the poses of a body were multiplied by it
   std::vector<std::string> notes;  // findings about it, one line each
 };
 
@@ -28,7 +29,9 @@ Recording ListDepthImages(const std::string& path, SequenceFormat format,
                           const SequenceOptions& options);
 
 // Reads a folder as OpenSequence does, but without finding up. The robot is removed from the images
-// unless `options` keeps it. `format`, one of images, replaces `options.format`. Throws InputError.
+// unless `options` keeps it. `slam`, if given, has the camera's poses; the folder's own may be a
+// body's (options.camera_mount). `format`, one of images, replaces `options.format`. Throws
+// InputError.
 DepthSequence ReadDepthSequence(const std::string& path, SequenceFormat format,
                                 const SequenceOptions& options = {},
                                 const std::optional<SlamOutput>& slam = {});

@@ -52,7 +52,7 @@ EventKind KindOf(std::string_view text, const std::vector<TextRow>& rows,
 
 std::string NameOf(EventKind kind) {
   if (kind == EventKind::kCsv) return kOwnEvents;
-  return kind == EventKind::kOrbSlam ? "ORB-SLAM2 events" : "stamped loops";
+  return kind == EventKind::kOrbSlam ? kOrbSlamEvents : "stamped loops";
 }
 
 bool IsHeader(std::string_view row) {

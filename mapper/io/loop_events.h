@@ -20,6 +20,8 @@ struct SlamEvent {
 
 // SlamEvents::kind of files that count the epochs.
 constexpr const char* kOwnEvents = "loops.csv";
+// Of files whose loops join cameras even where the poses are those of an IMU.
+constexpr const char* kOrbSlamEvents = "ORB-SLAM2 events";
 
 struct SlamEvents {
   std::string kind;               // for display: "loops.csv"

@@ -9,16 +9,20 @@ namespace depthgrid {
 namespace {
 
 // Exactly: a camera that moves comes near to where it began, but not to the last bit.
-bool IsIdentity(const std::optional<Pose3>& pose) {
-  return pose && pose->translation.isZero(0.0) && pose->rotation.vec().isZero(0.0);
+bool IsMarker(const std::optional<Pose3>& pose, const Pose3& identity) {
+  if (!pose || pose->translation != identity.translation) return false;
+  const Eigen::Vector4d& q = identity.rotation.coeffs();
+  return pose->rotation.coeffs() == q || pose->rotation.coeffs() == -q;
 }
 
 }  // namespace
 
-std::vector<int> FindLostMarkers(const std::vector<SlamPose>& live) {
+std::vector<int> FindLostMarkers(const std::vector<SlamPose>& live, const Pose3& identity) {
   std::vector<int> markers;
-  if (std::none_of(live.begin(), live.end(),
-                   [](const SlamPose& pose) { return IsIdentity(pose.slam_from_camera); })) {
+  const auto is_identity = [&](const SlamPose& pose) {
+    return IsMarker(pose.slam_from_camera, identity);
+  };
+  if (std::none_of(live.begin(), live.end(), is_identity)) {
     return markers;
   }
   const std::vector<int> jumps = FindJumps(live, {});
@@ -31,8 +35,8 @@ std::vector<int> FindLostMarkers(const std::vector<SlamPose>& live) {
     if (is_jump(i)) {
       markers.insert(markers.end(), run.begin(), run.end());
       run.clear();
-      if (IsIdentity(live[i].slam_from_camera)) run.push_back(static_cast<int>(i));
-    } else if (!run.empty() && IsIdentity(live[i].slam_from_camera)) {
+      if (is_identity(live[i])) run.push_back(static_cast<int>(i));
+    } else if (!run.empty() && is_identity(live[i])) {
       run.push_back(static_cast<int>(i));
     } else {
       run.clear();

@@ -102,6 +102,13 @@ std::optional<Pose3> ParseOne(const std::string& text, const std::string& place,
 
 }  // namespace
 
+Pose3 RigidMotionOf(std::span<const double> numbers, const std::string& place) {
+  RowDamage damage;
+  const auto pose = PoseOf(numbers, place, damage);
+  if (!pose) throw InputError("", damage.left_out().first);
+  return *pose;
+}
+
 std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place) {
   RowDamage damage;
   return ParseOne(text, place, damage);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ namespace depthgrid {
 // InputError if it is not a rigid motion.
 std::optional<Pose3> ReadMatrixPose(const std::string& path, Tally& left_out);
 std::optional<Pose3> ParseMatrixPose(const std::string& text, const std::string& place);
+
+// The pose that 12 or 16 numbers are, row-major. Throws InputError if they are no rigid motion.
+Pose3 RigidMotionOf(std::span<const double> numbers, const std::string& place);
 
 // A file with many matrices: one of 16 or 12 numbers per line, or in three or four lines of four
 // numbers (ICL-NUIM's .gt.sim). Damaged ones stay in the list without a pose and are counted in

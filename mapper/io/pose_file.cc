@@ -60,19 +60,21 @@ std::vector<std::optional<Pose3>> ParseMatrixRows(const std::string& text, const
   return poses;
 }
 
-Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
-                      std::vector<std::string>& warnings) {
+FilePoses ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
+                     std::vector<std::string>& warnings) {
   if (HoldsMatrices(text)) {
     Trajectory poses = StampedMatrices(text, place, frames, warnings);
     if (poses.empty()) throw InputError(place, "holds no pose of these frames");
-    return poses;
+    return {std::move(poses)};
   }
-  return PosesOf(ParseTrajectory(text, place), place, warnings);
+  TrajectoryFile file = ParseTrajectory(text, place);
+  const bool of_imu = file.of_imu;
+  return {PosesOf(std::move(file), place, warnings), of_imu};
 }
 
 Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,
                         std::vector<std::string>& warnings) {
-  return ParsePoses(ReadTextFile(path), path, frames, warnings);
+  return ParsePoses(ReadTextFile(path), path, frames, warnings).poses;
 }
 
 }  // namespace depthgrid

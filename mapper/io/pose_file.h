@@ -10,13 +10,18 @@
 
 namespace depthgrid {
 
+struct FilePoses {
+  Trajectory poses;
+  bool of_imu = false;  // a trajectory in the form in which EuRoC and VINS give an IMU's poses
+};
+
 // A trajectory, or one matrix per frame (4x4 or 3x4, row-major, camera to world, as KITTI's),
 // which gets the frames' stamps (PairInOrder). Repairs are added to `warnings`. Throws InputError,
 // also when there is no pose.
 Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,
                         std::vector<std::string>& warnings);
-Trajectory ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
-                      std::vector<std::string>& warnings);
+FilePoses ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
+                     std::vector<std::string>& warnings);
 
 // Whether the text has matrices (4, 12 or 16 columns in its first rows, which no header names)
 // rather than a trajectory.

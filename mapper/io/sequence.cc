@@ -54,7 +54,7 @@ std::size_t JumpsOfPart(const std::vector<int>& jumps, const DepthSequence& sequ
 void FindCorrections(const std::string& path, const RecordingOptions& options,
                      DepthSequence& sequence, std::vector<std::string>& notes) {
   SlamOutput& slam = sequence.slam;
-  const std::vector<int> markers = FindLostMarkers(slam.live);
+  const std::vector<int> markers = FindLostMarkers(slam.live, Pose3{} * sequence.body_from_camera);
   WarnOfCount(sequence.recording.warnings, path, static_cast<int>(markers.size()), "pose",
               kLostMarkers);
   Forget(markers, slam.live);

@@ -20,6 +20,10 @@ void SequenceOptions::Visit(OptionsVisitor& v) {
             {WorldUp::kMinusZ, "-z"}},
            "axis of the poses' world that points up; auto finds it from the floor");
   v.Text("camera", camera, "a camera file in place of the folder's own");
+  v.Text(
+      "camera_mount", camera_mount,
+      "a file that says where the camera is on the body (an IMU, a robot) whose poses are given; "
+      "empty: poses are the camera's");
   part.Visit(v);
   v.Group("recording", recording, "depth images and how poses are found for them");
   v.Group("laser", laser, "laser logs");

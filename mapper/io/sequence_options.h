@@ -19,6 +19,9 @@ struct SequenceOptions {
   // and, where none is seen, takes z (-y for ICL-NUIM).
   WorldUp world_up = WorldUp::kAuto;
   std::string camera;  // a camera file in place of the folder's own
+  // A file with the camera's place on the body whose poses the recording's own are
+  // (camera_mount.h); empty: they are the camera's. For poses from elsewhere: SlamReading::mount.
+  std::string camera_mount;
   // The part of the frames to read, numbered as in the whole recording. What does not concern
   // single frames (order of poses, up) is found from the whole recording, so that its parts share a
   // world and fit its other files.

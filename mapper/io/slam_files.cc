@@ -40,6 +40,11 @@ bool IsFoundAgain(const std::vector<SlamPose>& live, std::size_t frame) {
   return frame > 0 && live[frame].slam_from_camera && !live[frame - 1].slam_from_camera;
 }
 
+constexpr const char* kImuPosesTaken =
+    "EuRoC's and VINS's poses are those of the IMU, these are taken for the camera's; if they are "
+    "not, --set sequence.camera_mount=FILE says where the camera is on it (EuRoC's sensor.yaml, "
+    "Kalibr's camchain, VINS's settings)";
+
 struct FramedPose {
   std::size_t frame = 0;
   StampedPose pose;
@@ -277,6 +282,14 @@ std::optional<std::string> DoubtOfPosed(const std::vector<SlamPose>& live, const
   return FewText(posed, frames, poses, path);
 }
 
+// Makes a body's poses the camera's. ORB-SLAM's events are about the camera whatever its poses are.
+void MountCamera(const CameraMount& mount, bool loops_are_cameras, SlamInput& input) {
+  std::vector<LoopClosure> loops = input.slam.loops;
+  input.slam = OnBody(std::move(input.slam), mount);
+  if (loops_are_cameras) input.slam.loops = std::move(loops);
+  input.notes.push_back(Said(mount));
+}
+
 }  // namespace
 
 std::string LoopsText(const SlamOutput& output) {
@@ -324,7 +337,8 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   SlamEvents events;
   if (!paths.loops.empty()) events = TakeEvents(paths.loops, frames, max_difference_s, input);
   const std::string text = ReadTextFile(paths.live);
-  const Trajectory live = ParsePoses(text, paths.live, frames, input.warnings);
+  const FilePoses given = ParsePoses(text, paths.live, frames, input.warnings);
+  const Trajectory& live = given.poses;
   slam.live = LivePoses(FramedLive(live, paths.live, frames, reading, input.warnings),
                         events.events, frames.stamps_s);
   slam.final =
@@ -334,6 +348,8 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   FinishLive(live, paths, reading, epochs_known, input);
   if (!epochs_known) SayCorrections(paths, Corrected(before, slam.live), frames.part, input);
   KeepLoopsOf(frames.part, input);
+  if (reading.mount) MountCamera(*reading.mount, events.kind == kOrbSlamEvents, input);
+  if (!reading.mount && given.of_imu) input.warnings.push_back(paths.live + ": " + kImuPosesTaken);
   const auto doubt = DoubtOfPosed(slam.live, live, paths.live, frames, max_difference_s);
   // Matrices have the stamps of the frames that they were paired with.
   if (doubt && !HoldsMatrices(text)) input.warnings.push_back(*doubt);

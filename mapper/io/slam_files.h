@@ -11,10 +11,12 @@
 //   stamp_s, first_stamp_s, second_stamp_s    of `frame`, `first` and `second`; may be left out
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "mapper/core/slam_output.h"
+#include "mapper/io/camera_mount.h"
 #include "mapper/io/frame_names.h"
 #include "mapper/io/recording_options.h"
 
@@ -43,6 +45,8 @@ struct SlamReading {
   // Interpolates between the two neighbouring poses instead of taking the nearest.
   bool interpolate = false;
   double max_interpolation_gap_s = RecordingOptions{}.max_interpolation_gap_s;
+  // Set where the poses are those of a body; the camera's are given.
+  std::optional<CameraMount> mount = {};
 };
 
 // Reads a SLAM system's output: its poses (TUM, or one matrix per frame in order), its final poses

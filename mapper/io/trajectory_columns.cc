@@ -17,7 +17,8 @@ constexpr const char* kTumNames = "stamp x y z qx qy qz qw";
 // Columns of files without a header that programs write with commas and w first: poses alone, with
 // a velocity (both VINS) and with a velocity and two biases (EuRoC).
 constexpr std::size_t kWFirstCounts[] = {8, 11, 17};
-constexpr std::size_t kRowsLookedAt = 10;  // the first few may be damaged
+constexpr const char* kEuRocPosition = "p_rs_r";  // of the sensor S, the IMU, in the world R
+constexpr std::size_t kRowsLookedAt = 10;         // the first few may be damaged
 // Stamps in seconds are not whole numbers eleven days apart: these are nanoseconds, at most a
 // thousand poses a second.
 constexpr double kLeastStepNs = 1e6;
@@ -80,7 +81,8 @@ bool IsOneOf(std::string_view word, const char* const (&words)[kCount]) {
 // Where the column of a name goes: 0 the stamp, 1 to 3 x y z, 4 to 7 qx qy qz qw.
 std::optional<std::size_t> RoleOf(std::string_view word) {
   constexpr const char* kStamps[] = {"stamp", "timestamp", "time", "t"};
-  constexpr const char* kPositions[] = {"", "t", "p", "p_rs_r", "pos", "position", "translation"};
+  constexpr const char* kPositions[] = {"",    "t",        "p",          kEuRocPosition,
+                                        "pos", "position", "translation"};
   constexpr const char* kRotations[] = {"q", "q_rs", "quat", "quaternion", "orientation"};
   if (IsOneOf(word, kStamps)) return 0;
   if (word.empty()) return {};
@@ -118,6 +120,7 @@ std::optional<TrajectoryColumns> ColumnsNamed(const std::vector<ColumnName>& nam
   columns.stamp = *at[0];
   for (std::size_t i = 0; i < 3; ++i) columns.position[i] = *at[1 + i];
   for (std::size_t i = 0; i < 4; ++i) columns.rotation[i] = *at[4 + i];
+  columns.of_imu = names[columns.position[0]].word.starts_with(kEuRocPosition);
   columns.units_a_second = UnitsASecond(names[columns.stamp].unit);
   return columns;
 }
@@ -168,6 +171,7 @@ TrajectoryColumns UsualColumns(std::span<const TextRow> rows, const std::string&
     columns.count = count;
     columns.rotation = {5, 6, 7, 4};
     columns.units_a_second = 1e9;
+    columns.of_imu = true;
     columns.taken =
         "no header names its columns; read as VINS and EuRoC write them, nanoseconds x y z qw qx "
         "qy qz (a first line #timestamp [ns],x,y,z,qx,qy,qz,qw, and so on, names others)";

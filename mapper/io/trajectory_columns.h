@@ -20,6 +20,7 @@ struct TrajectoryColumns {
   std::array<std::size_t, 4> rotation = {4, 5, 6, 7};  // qx qy qz qw
   double units_a_second = 1.0;
   int header_line = 0;  // from 1; 0: none
+  bool of_imu = false;  // EuRoC's and VINS's poses are those of the IMU
   // What nothing in the file states and was taken for granted; empty if there is no such thing.
   std::string taken;
 };

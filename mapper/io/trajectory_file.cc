@@ -81,6 +81,7 @@ TrajectoryFile ParseTrajectory(const std::string& text, const std::string& place
   RequirePlainColumns(rows, place);
   const TrajectoryColumns columns = ColumnsOf(text, rows, place);
   file.taken = columns.taken;
+  file.of_imu = columns.of_imu;
   std::unordered_set<double> seen;
   std::vector<int> lines;  // of the poses
   for (const TextRow& row : rows) {

@@ -16,6 +16,7 @@ namespace depthgrid {
 struct TrajectoryFile {
   Trajectory poses;
   std::string taken;                       // TrajectoryColumns::taken
+  bool of_imu = false;                     // TrajectoryColumns::of_imu
   int unsorted_stamps = 0;                 // rows earlier than their predecessor, sorted
   std::optional<std::string> clock_doubt;  // DoubtOfSorted
   Tally doubled_stamps;                    // all but the first row of each stamp, dropped

@@ -89,7 +89,7 @@ bool TryColourPng(std::string_view bytes) {
 bool TryTrajectory(std::string_view bytes) {
   return Accepts([&] {
     std::vector<std::string> warnings;
-    SlamOutput slam = SlamOutputOf(ParsePoses(std::string(bytes), "x", {Stamps()}, warnings));
+    SlamOutput slam = SlamOutputOf(ParsePoses(std::string(bytes), "x", {Stamps()}, warnings).poses);
     const std::vector<int> jumps = FindJumps(slam.live, slam.final);
     LoopsFromRevision(slam.live, slam.final, jumps);
     StartEpochs(jumps, slam.live);

@@ -179,7 +179,7 @@ TEST_F(PartOfASequence, MatricesPairWithEither) {
     text.clear();
     for (int i = 0; i < count; ++i) text += fmt::format("1 0 0 {} 0 1 0 0 0 0 1 0\n", i);
     std::vector<std::string> warnings;
-    const Trajectory poses = ParsePoses(text, "x", names, warnings);
+    const Trajectory poses = ParsePoses(text, "x", names, warnings).poses;
     EXPECT_THAT(warnings, IsEmpty());
     ASSERT_EQ(poses.size(), static_cast<std::size_t>(count));
     EXPECT_EQ(poses[0].stamp_s, count == 4 ? 0.5 : 0.0);
