@@ -39,6 +39,8 @@ struct SlamOutput {
   std::vector<SlamPose> live;      // one an input frame
   Trajectory final;                // after all corrections; frames SLAM never placed are absent
   std::vector<LoopClosure> loops;  // ordered by reported_at_frame
+  // Whether the warnings of whoever read it say already how many frames have no pose.
+  bool lack_is_told = false;
 };
 
 }  // namespace depthgrid

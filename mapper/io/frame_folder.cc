@@ -95,8 +95,10 @@ std::vector<std::optional<Pose3>> PosesOf(const std::vector<NumberedImage>& imag
   Recording& recording = listed.recording;
   if (const auto list = PoseListOf(folder); list && !PoseFileOf(images.front(), folder)) {
     try {
-      return PairInOrder(ReadMatrixPoses(list->string(), recording.warnings), NamesOf(recording),
-                         list->string(), recording.warnings);
+      PairedPoses paired = PairInOrder(ReadMatrixPoses(list->string(), recording.warnings),
+                                       NamesOf(recording), list->string(), recording.warnings);
+      listed.poses.lack_is_told = paired.lack_is_told;
+      return std::move(paired.poses);
     } catch (const InputError& error) {
       listed.poses_fault = error.what();
       return std::vector<std::optional<Pose3>>(images.size());

@@ -145,15 +145,22 @@ std::string RemedyOf(const FrameNames& names, const std::vector<double>& pose_st
   return InterpolationRemedy(names, pose_stamps_s);
 }
 
+std::string LackShown(const std::vector<std::optional<Pose3>>& paired) {
+  const auto lacking = std::count(paired.begin(), paired.end(), std::nullopt);
+  if (lacking == 0) return "";
+  return fmt::format(", so {} no pose",
+                     Counted(lacking, "frame") + (lacking == 1 ? " has" : " have"));
+}
+
 // What is assumed of poses without stamps that are not as many as the frames, and the remedy.
-std::string PairedFromTheFirst(std::size_t poses, std::size_t frames) {
+std::string PairedFromTheFirst(std::size_t poses, std::size_t frames, const std::string& lack) {
   const std::string assumed = poses < frames
                                   ? fmt::format("taken for the first {}", Counted(poses, "frame"))
                                   : fmt::format("the first {} are taken for them", frames);
   return fmt::format(
-      "without stamps: {}; if they are of others, give a row with a stamp for each "
+      "without stamps: {}{}; if they are of others, give a row with a stamp for each "
       "(t x y z qx qy qz qw), or a row for each frame (NaN where there is no pose)",
-      assumed);
+      assumed, lack);
 }
 
 }  // namespace
@@ -195,27 +202,29 @@ std::string PartShown(const FrameNames& names) {
                      names.stamps_s.back() - first_s);
 }
 
-std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,
-                                              const FrameNames& frames, const std::string& place,
-                                              std::vector<std::string>& warnings) {
+PairedPoses PairInOrder(std::vector<std::optional<Pose3>> poses, const FrameNames& frames,
+                        const std::string& place, std::vector<std::string>& warnings) {
   const std::size_t count = frames.stamps_s.size();
-  if (poses.size() == count || count == 0) return poses;
+  if (poses.size() == count || count == 0) return {std::move(poses), false};
   if (poses.size() == frames.CountInPart()) {  // SLAM ran on the part only
     poses.insert(poses.begin(), frames.part.begin, std::nullopt);
     poses.resize(count);
-    return poses;
+    return {std::move(poses), false};
   }
   const auto last = static_cast<std::size_t>(frames.NumberOf(count - 1));
   const bool by_number = poses.size() == last + 1;
-  warnings.push_back(fmt::format(
-      "{}: {} for {}, {}", place, Counted(poses.size(), "pose"), Counted(count, "frame"),
-      by_number ? "paired by the frames' numbers" : PairedFromTheFirst(poses.size(), count)));
   std::vector<std::optional<Pose3>> paired(count);
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t pose = by_number ? static_cast<std::size_t>(frames.NumberOf(i)) : i;
     if (pose < poses.size()) paired[i] = poses[pose];
   }
-  return paired;
+  const std::string lack = LackShown(paired);
+  warnings.push_back(fmt::format("{}: {} for {}, {}", place, Counted(poses.size(), "pose"),
+                                 Counted(count, "frame"),
+                                 by_number ? "paired by the frames' numbers" + lack
+                                           : PairedFromTheFirst(poses.size(), count, lack)));
+  // What is told of frames is of the part.
+  return {std::move(paired), frames.IsWhole()};
 }
 
 }  // namespace depthgrid

@@ -52,11 +52,15 @@ bool LacksEachSecondPose(const std::vector<bool>& has_pose);
 // The part as "frames 300 to 599 of 900, 10.000 to 19.967 s of 29.967".
 std::string PartShown(const FrameNames& names);
 
+struct PairedPoses {
+  std::vector<std::optional<Pose3>> poses;  // one per frame
+  bool lack_is_told = false;                // SlamOutput::lack_is_told
+};
+
 // Pairs poses without stamps with the frames: one pose per frame, per frame of the part or, if
 // frames have been left out, per number from 0. Any other count gives a warning, and they are
 // paired from the first.
-std::vector<std::optional<Pose3>> PairInOrder(std::vector<std::optional<Pose3>> poses,
-                                              const FrameNames& frames, const std::string& place,
-                                              std::vector<std::string>& warnings);
+PairedPoses PairInOrder(std::vector<std::optional<Pose3>> poses, const FrameNames& frames,
+                        const std::string& place, std::vector<std::string>& warnings);
 
 }  // namespace depthgrid

@@ -52,10 +52,12 @@ SlamOutput SlamOutputOf(std::vector<std::optional<Pose3>> poses, Recording& reco
     throw InputError(path, fmt::format("holds {} for {}", Counted(poses.size(), "pose"),
                                        Counted(images, "image")));
   }
-  poses = PairInOrder(std::move(poses), NamesOf(recording), path, recording.warnings);
+  const PairedPoses paired =
+      PairInOrder(std::move(poses), NamesOf(recording), path, recording.warnings);
   SlamOutput slam;
+  slam.lack_is_told = paired.lack_is_told;
   for (std::size_t i = 0; i < images; ++i) {
-    const auto& pose = poses[i];
+    const auto& pose = paired.poses[i];
     slam.live.push_back({recording.images[i].stamp_s, pose, 0});
     if (pose) slam.final.push_back({recording.images[i].stamp_s, *pose});
   }

@@ -16,14 +16,15 @@ constexpr std::size_t kTumColumns = 8;
 constexpr const char* kTumIsOtherwise =
     " (a TUM trajectory has 8 columns, t x y z qx qy qz qw, with decimal points)";
 
-Trajectory StampedMatrices(const std::string& text, const std::string& place,
-                           const FrameNames& frames, std::vector<std::string>& warnings) {
-  const auto poses = PairInOrder(ParseMatrixRows(text, place, warnings), frames, place, warnings);
-  Trajectory trajectory;
+FilePoses StampedMatrices(const std::string& text, const std::string& place,
+                          const FrameNames& frames, std::vector<std::string>& warnings) {
+  const auto [poses, lack_is_told] =
+      PairInOrder(ParseMatrixRows(text, place, warnings), frames, place, warnings);
+  FilePoses stamped{{}, lack_is_told};
   for (std::size_t i = 0; i < std::min(poses.size(), frames.stamps_s.size()); ++i) {
-    if (poses[i]) trajectory.push_back({frames.stamps_s[i], *poses[i]});
+    if (poses[i]) stamped.poses.push_back({frames.stamps_s[i], *poses[i]});
   }
-  return trajectory;
+  return stamped;
 }
 
 }  // namespace
@@ -63,13 +64,13 @@ std::vector<std::optional<Pose3>> ParseMatrixRows(const std::string& text, const
 FilePoses ParsePoses(const std::string& text, const std::string& place, const FrameNames& frames,
                      std::vector<std::string>& warnings) {
   if (HoldsMatrices(text)) {
-    Trajectory poses = StampedMatrices(text, place, frames, warnings);
-    if (poses.empty()) throw InputError(place, "holds no pose of these frames");
-    return {std::move(poses)};
+    FilePoses stamped = StampedMatrices(text, place, frames, warnings);
+    if (stamped.poses.empty()) throw InputError(place, "holds no pose of these frames");
+    return stamped;
   }
   TrajectoryFile file = ParseTrajectory(text, place);
   const bool of_imu = file.of_imu;
-  return {PosesOf(std::move(file), place, warnings), of_imu};
+  return {PosesOf(std::move(file), place, warnings), false, of_imu};
 }
 
 Trajectory ReadPoseFile(const std::string& path, const FrameNames& frames,

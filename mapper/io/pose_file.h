@@ -12,6 +12,7 @@ namespace depthgrid {
 
 struct FilePoses {
   Trajectory poses;
+  bool lack_is_told = false;  // SlamOutput::lack_is_told
   bool of_imu = false;  // a trajectory in the form in which EuRoC and VINS give an IMU's poses
 };
 

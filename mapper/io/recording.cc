@@ -178,8 +178,10 @@ class RecordingSource final : public FrameSource {
     return MostLackPoses(static_cast<std::size_t>(with_pose), has_pose.size()) ||
            LacksEachSecondPose(has_pose);
   }
-  // ReadSlamFiles tells, with the file's name and stamps.
+  // Matrices that are not one per frame are told of where they are paired; ReadSlamFiles tells,
+  // with the file's name and stamps.
   bool IsToldByReader(const SlamOutput& slam) const {
+    if (slam.lack_is_told) return true;
     return recording_.poses_given && HasPosesByFrame(slam) && LacksMany();
   }
   std::string WhyWithout(const SlamOutput& slam, const RecordingOptions& options) const {

@@ -339,6 +339,7 @@ SlamInput ReadSlamFiles(const SlamFilePaths& paths, const FrameNames& frames,
   const std::string text = ReadTextFile(paths.live);
   const FilePoses given = ParsePoses(text, paths.live, frames, input.warnings);
   const Trajectory& live = given.poses;
+  slam.lack_is_told = given.lack_is_told;
   slam.live = LivePoses(FramedLive(live, paths.live, frames, reading, input.warnings),
                         events.events, frames.stamps_s);
   slam.final =

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 
 #include "mapper/io/camera_formats.h"
+#include "mapper/io/matrix_poses.h"
 #include "mapper/io/trajectory_file.h"
 #include "tests/eval/program.h"
 
@@ -100,8 +101,6 @@ TEST_F(ProgramGivenFiles, CamerasOfOtherPrograms) {
 
 // One line each tells how many frames have no pose, and what was assumed.
 TEST_F(ProgramGivenFiles, FewPosesAreToldOnce) {
-  const Trajectory few(truth_.begin(), truth_.begin() + 4);
-  WriteTrajectory(Path("few.txt"), few);
   const auto lines_about_poses = [&](const std::string& arguments) {
     const std::string said = Mapped(arguments).second;
     std::vector<std::string> lines;
@@ -111,20 +110,23 @@ TEST_F(ProgramGivenFiles, FewPosesAreToldOnce) {
     }
     return lines;
   };
+  WriteTrajectory(Path("few.txt"), Trajectory(truth_.begin(), truth_.begin() + 4));
   EXPECT_THAT(lines_about_poses("seq --poses few.txt"),
               ::testing::ElementsAre(HasSubstr("few.txt: gives 4 of 12 frames a pose: ")));
-  std::string matrices;
-  for (const StampedPose& pose : few) {
-    const Eigen::Matrix3d r = pose.world_from_camera.rotation.toRotationMatrix();
-    for (int row = 0; row < 3; ++row) {
-      matrices += fmt::format("{} {} {} {}{}", r(row, 0), r(row, 1), r(row, 2),
-                              pose.world_from_camera.translation[row], row < 2 ? " " : "\n");
-    }
+  // Of more than half of the frames as well.
+  for (const int count : {4, 8}) {
+    Write("kitti.txt", MatrixPosesText({truth_.begin(), truth_.begin() + count}));
+    EXPECT_THAT(lines_about_poses("seq --poses kitti.txt"),
+                ::testing::ElementsAre(HasSubstr(fmt::format(
+                    "kitti.txt: {0} poses for 12 frames, without stamps: taken for the first {0} "
+                    "frames, so {1} frames have no pose; if they",
+                    count, 12 - count))));
   }
-  Write("kitti.txt", matrices);
+  // One for each frame, of which one says that there is none.
+  std::string matrices = MatrixPosesText({truth_.begin() + 1, truth_.begin() + 12});
+  Write("kitti.txt", "nan 0 0 0 0 1 0 0 0 0 1 0\n" + matrices);
   EXPECT_THAT(lines_about_poses("seq --poses kitti.txt"),
-              ::testing::ElementsAre(HasSubstr("kitti.txt: 4 poses for 12 frames, without stamps: "
-                                               "taken for the first 4 frames; if they")));
+              ::testing::ElementsAre(HasSubstr("seq: 1 of 12 frames has no pose")));
 }
 
 TEST_F(ProgramGivenFiles, ScansWithoutPosesAreThoseOfTheOdometry) {

@@ -125,9 +125,9 @@ TEST_F(FrameFolderTest, OneFileOfPoses) {
   EXPECT_THAT(
       WarningsOf(*source),
       ElementsAre("~/poses.txt: 2 poses for 3 frames, without stamps: taken for the first 2 "
-                  "frames; if they are of others, give a row with a stamp for each (t x y z "
-                  "qx qy qz qw), or a row for each frame (NaN where there is no pose)",
-                  "~: 1 of 3 frames has no pose"));
+                  "frames, so 1 frame has no pose; if they are of others, give a row with a stamp "
+                  "for each (t x y z qx qy qz qw), or a row for each frame (NaN where there is no "
+                  "pose)"));
 }
 
 // An image that was taken away since leaves its pose behind.
