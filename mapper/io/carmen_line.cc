@@ -290,12 +290,35 @@ CarmenLine ParseOdometry(Tokens& tokens) {
   return odometry;
 }
 
+std::optional<CarmenOffset::Of> OffsetNamed(std::string_view parameter) {
+  if (parameter == "robot_frontlaser_offset") return CarmenOffset::Of::kX;
+  if (parameter == "robot_frontlaser_side_offset") return CarmenOffset::Of::kY;
+  if (parameter == "robot_frontlaser_angular_offset") return CarmenOffset::Of::kYaw;
+  return {};
+}
+
+// What no laser's place on a robot can be: millimetres, degrees.
+CarmenLine OffsetOf(CarmenOffset::Of of, std::string_view name, std::optional<double> value) {
+  constexpr double kFarthestM = 10.0;
+  constexpr double kMostRad = 2.0 * kPi;
+  const bool is_yaw = of == CarmenOffset::Of::kYaw;
+  const double most = is_yaw ? kMostRad : kFarthestM;
+  if (value && std::abs(*value) <= most) return CarmenOffset{of, *value};
+  const std::string given = value ? fmt::format("{:g}", *value) : "no number";
+  return CarmenDamage{
+      "a damaged PARAM of the front laser's place", false,
+      fmt::format("{} is {}, must be {} at most", name, given, is_yaw ? "two pi radians" : "10 m"),
+      true};
+}
+
 // PARAM name value time host logger_time. The front laser is the one of all three.
 CarmenLine ParseParameter(Tokens& tokens) {
-  if (tokens.Next() != "robot_front_laser_max") return CarmenOther{};
-  const std::optional<double> range_m = tokens.NextNumber();
-  if (!range_m || !(*range_m > 0.0) || !std::isfinite(*range_m)) return CarmenOther{};
-  return CarmenMaximum{*range_m};
+  const std::string_view name = tokens.Next();
+  const std::optional<double> value = tokens.NextNumber();
+  if (const auto offset = OffsetNamed(name)) return OffsetOf(*offset, name, value);
+  const bool is_maximum = name == "robot_front_laser_max" && value && *value > 0.0;
+  if (!is_maximum || !std::isfinite(*value)) return CarmenOther{};
+  return CarmenMaximum{*value};
 }
 
 // Readings in millimetres would all be taken for no return.

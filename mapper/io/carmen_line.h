@@ -47,6 +47,14 @@ struct CarmenMaximum {
   double range_m = 0.0;
 };
 
+// PARAM robot_frontlaser_offset, _side_offset or _angular_offset: where the front laser is on the
+// robot, one number of it.
+struct CarmenOffset {
+  enum class Of { kX, kY, kYaw };
+  Of of = Of::kX;
+  double value = 0.0;  // metres ahead or to the left; radians to the left
+};
+
 // RAWLASER1: a scan without poses.
 struct CarmenRawScan {
   CarmenScan scan;
@@ -71,7 +79,7 @@ struct CarmenDamage {
 };
 
 using CarmenLine = std::variant<CarmenScan, CarmenRawScan, CarmenOdometry, CarmenMaximum,
-                                CarmenOther, CarmenDamage>;
+                                CarmenOffset, CarmenOther, CarmenDamage>;
 
 CarmenLine ParseCarmenLine(std::string_view line);
 

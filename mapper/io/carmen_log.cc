@@ -133,6 +133,18 @@ class CarmenLogSource : public FrameSource {
     return doubts;
   }
 
+  std::string TextOfRaw() const {
+    const std::string poses =
+        path_ +
+        ": scans are RAWLASER1 lines, their poses the robot's of the ODOM lines around them";
+    const Pose2& place = raw_.robot_from_laser();
+    if (place == Pose2{}) return poses + "; sequence.laser.mount is where the laser is on it";
+    return fmt::format(
+        "{} with the laser at ({:g}, {:g}) m, {:g} degrees to the left, as PARAM "
+        "robot_frontlaser_offset and the like say (sequence.laser.mount replaces it)",
+        poses, place.x_m, place.y_m, DegFromRad(place.yaw_rad));
+  }
+
   Doubts ReadAgain() {
     names_ = {};
     faults_ = LaserFaults(options_);
@@ -147,10 +159,7 @@ class CarmenLogSource : public FrameSource {
     Doubts doubts = ReadThrough();
     if (lines_of_scans_ == 0 && raw_.Begin()) doubts = ReadAgain();
     if (raw_.IsUsed() && !names_.stamps_s.empty()) {
-      warnings_.push_back(
-          path_ +
-          ": scans are RAWLASER1 lines, their poses the robot's of the ODOM lines around them; "
-          "sequence.laser.mount is where the laser is on it");
+      warnings_.push_back(TextOfRaw());
     }
     if (const std::optional<int> first = twins_.FirstFlaser()) {
       warnings_.push_back(
@@ -341,7 +350,7 @@ class CarmenLogSource : public FrameSource {
   std::size_t scans_ = 0;  // those used
   std::int64_t lines_of_scans_ = 0;
   FrameNames names_;
-  CarmenRaw raw_;
+  CarmenRaw raw_{options_.mount.base_from_laser() == Pose2{}};
   ScanClock clock_;
   CarmenTwins twins_;
   bool leaves_out_flaser_ = false;

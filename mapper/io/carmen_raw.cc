@@ -30,6 +30,7 @@ bool AreTooFarApart(const CarmenOdometry& before, const CarmenOdometry& after) {
 
 void CarmenRaw::Rewind() {
   passed_ = 0;
+  robot_from_laser_ = {};
   if (!is_used_) odometry_.clear();
 }
 
@@ -44,6 +45,10 @@ CarmenLine CarmenRaw::Take(CarmenLine line) {
     ++passed_;
     return CarmenOther{};
   }
+  if (const auto* offset = std::get_if<CarmenOffset>(&line)) {
+    if (takes_offsets_) TakeOffset(*offset);
+    return CarmenOther{};
+  }
   if (auto* raw = std::get_if<CarmenRawScan>(&line)) {
     has_scans_ = true;
     return is_used_ ? Placed(std::move(raw->scan)) : CarmenOther{};
@@ -52,6 +57,20 @@ CarmenLine CarmenRaw::Take(CarmenLine line) {
   if (damage == nullptr || !damage->is_raw) return line;
   has_scans_ = has_scans_ || damage->is_scan;
   return is_used_ ? std::move(line) : CarmenOther{};
+}
+
+void CarmenRaw::TakeOffset(const CarmenOffset& offset) {
+  switch (offset.of) {
+    case CarmenOffset::Of::kX:
+      robot_from_laser_.x_m = offset.value;
+      break;
+    case CarmenOffset::Of::kY:
+      robot_from_laser_.y_m = offset.value;
+      break;
+    case CarmenOffset::Of::kYaw:
+      robot_from_laser_.yaw_rad = WrapAngle(offset.value);
+      break;
+  }
 }
 
 // Looks from the scan's place in the log on, not from the stamps alone: a clock that was set back
@@ -66,7 +85,7 @@ CarmenLine CarmenRaw::Placed(CarmenScan scan) const {
   if (odometry_.empty()) return missing("the log has no usable ODOM line");
   const bool is_at_last = after > 0 && odometry_[after - 1].stamp_s == scan.stamp_s;
   if (is_at_last) {
-    scan.odom_from_laser = odometry_[after - 1].odom_from_robot;
+    scan.odom_from_robot = odometry_[after - 1].odom_from_robot;
   } else if (after == 0 || after == odometry_.size()) {
     return missing(fmt::format("stamp {:.6f} is {} ODOM line's", scan.stamp_s,
                                after == 0 ? "before the first" : "behind the last"));
@@ -76,9 +95,9 @@ CarmenLine CarmenRaw::Placed(CarmenScan scan) const {
         "apart",
         scan.stamp_s, odometry_[after - 1].stamp_s, odometry_[after].stamp_s, kMostOdometryGapS));
   } else {
-    scan.odom_from_laser = PoseBetween(odometry_[after - 1], odometry_[after], scan.stamp_s);
+    scan.odom_from_robot = PoseBetween(odometry_[after - 1], odometry_[after], scan.stamp_s);
   }
-  scan.odom_from_robot = scan.odom_from_laser;
+  scan.odom_from_laser = scan.odom_from_robot * robot_from_laser_;
   scan.stated_yaw_rad = scan.odom_from_laser.yaw_rad;
   return scan;
 }

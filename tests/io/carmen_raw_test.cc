@@ -44,6 +44,51 @@ TEST(CarmenRaw, PosesAreBetweenThoseOfTheOdometry) {
   EXPECT_EQ(frames[0].scan->max_range_m, 6.0);
 }
 
+// The laser of a robot at (1, 2) that looks to the left.
+TEST(CarmenRaw, TheLogSaysWhereTheLaserIs) {
+  const std::string offsets =
+      "PARAM robot_frontlaser_offset 0.3 0 h 0\nPARAM robot_frontlaser_side_offset 0.1 0 h 0\n"
+      "PARAM robot_frontlaser_angular_offset -0.5 0 h 0\n";
+  const std::string turned = "ODOM 1 2 1.5707963267948966 0 0 0 ";
+  const std::string log = turned + "1.0 h 1.0\n" + RawLine(1.1) + turned + "1.2 h 1.2\n";
+  const auto frames = FramesOf(offsets + log);
+  ASSERT_EQ(frames.size(), 1U);
+  const Pose2 laser = PoseOfFrame(frames[0]);
+  EXPECT_NEAR(laser.x_m, 0.9, 1e-12);
+  EXPECT_NEAR(laser.y_m, 2.3, 1e-12);
+  EXPECT_NEAR(laser.yaw_rad, 0.5 * kPi - 0.5, 1e-12);
+  EXPECT_THAT(
+      WarningsOf(offsets + log),
+      HasSubstr("around them with the laser at (0.3, 0.1) m, -28.6479 degrees to the left"));
+  // A mount that is given replaces it; a scan before these lines has the robot's pose.
+  const TextFile file(offsets + log);
+  CarmenLogOptions options;
+  options.mount.x_m = 0.2;
+  const auto mounted = ReadAll(*OpenCarmenLog(file.path(), options));
+  ASSERT_EQ(mounted.size(), 1U);
+  EXPECT_NEAR(PoseOfFrame(mounted[0]).y_m, 2.2, 1e-12);
+  EXPECT_NEAR(PoseOfFrame(FramesOf(log + offsets)[0]).x_m, 1.0, 1e-12);
+}
+
+TEST(CarmenRaw, ADamagedOffsetIsToldAndLeftOut) {
+  const std::string log = OdometryLine(1.0, 0.0, 0.0) + RawLine(1.1) + OdometryLine(1.2, 0.0, 0.0);
+  int told = 0;
+  for (const auto& [value, rule] :
+       {std::pair("offset 300", "offset is 300, must be 10 m at most"),
+        std::pair("offset nan", "offset is nan, must be 10 m at most"),
+        std::pair("side_offset", "side_offset is no number, must be 10 m at most"),
+        std::pair("side_offset left", "side_offset is no number, must be 10 m at most"),
+        std::pair("angular_offset 45", "angular_offset is 45, must be two pi radians at most")}) {
+    const std::string damaged = "PARAM robot_frontlaser_" + std::string(value) + "\n" + log;
+    EXPECT_THAT(WarningsOf(damaged), HasSubstr(std::string(":1: a damaged PARAM of the front "
+                                                           "laser's place: robot_frontlaser_") +
+                                               rule));
+    EXPECT_EQ(PoseOfFrame(FramesOf(damaged)[0]), (Pose2{}));
+    ++told;
+  }
+  EXPECT_EQ(told, 5);
+}
+
 TEST(CarmenRaw, OfALogWithOtherScansTheyAreNotRead) {
   const std::string scan =
       "ROBOTLASER1 0 -0.5 1 0.5 6 0.01 0 3 2.5 6.0 2 0 0 0 0 0 0 0 0 0 0 0 0 5.0 h 5.0\n";
