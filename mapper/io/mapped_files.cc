@@ -1,6 +1,7 @@
 #include "mapper/io/mapped_files.h"
 
 #include <algorithm>
+#include <exception>
 #include <filesystem>
 #include <optional>
 
@@ -81,10 +82,20 @@ bool HasMatchedNext(const std::string& folder) {
 // Does the last step of a save that was killed before it, or removes what it did not get to use.
 void FinishKilledSave(const std::string& folder) {
   const std::string next = NextMatchedPath(folder);
+  if (!fs::exists(next)) return;  // to remove nothing fails, too, where nothing can be written
   if (HasMatchedNext(folder)) {
     fs::rename(next, MatchedPath(folder));
   } else {
     fs::remove(next);
+  }
+}
+
+// A full disk is not kept full by half a save. What failed is told by the error that led here.
+void MakeRoomAfterFailure(const std::string& folder) {
+  try {
+    FinishKilledSave(folder);
+  } catch (const std::exception&) {
+    return;
   }
 }
 
@@ -106,7 +117,12 @@ void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& fram
   // from then on the next one.
   const std::string next = NextMatchedPath(folder);
   if (!same || fs::exists(MatchedPath(folder))) WriteScans(next, matched);
-  WriteScans(DrawnPath(folder), drawn);
+  try {
+    WriteScans(DrawnPath(folder), drawn);
+  } catch (...) {
+    MakeRoomAfterFailure(folder);
+    throw;
+  }
   if (same) {
     fs::remove(MatchedPath(folder));
     SyncToDisk(folder);  // never the old matched scans alone beside the new drawn ones

@@ -12,7 +12,9 @@ namespace depthgrid {
 
 // Writes `mapped` of a MapperResult, or CurrentMapped(), into an existing folder, replacing an
 // earlier map. A save that is killed, at any step, leaves either the old or the new map; so does a
-// power cut. Throws std::runtime_error on a write error.
+// power cut. Throws std::runtime_error on a write error, DiskFullError where there is no room
+// (mapper/io/file.h); the earlier map is there then, and nothing of the new one. Beside the files
+// of the earlier map there must be room for those of the new.
 void WriteMapped(const std::string& folder, const std::vector<MappedFrame>& frames);
 
 // The frames as PriorMap needs them: with negative numbers, one skipped between two drives. Throws

@@ -3,10 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/mount.h>
 #include <sys/resource.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <stdexcept>
 
 #include "mapper/io/scan_file.h"
 #include "tests/refusal.h"
@@ -16,6 +19,7 @@ namespace depthgrid {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::UnorderedElementsAre;
 
 class MappedFilesTest : public ::testing::Test {
  protected:
@@ -121,20 +125,26 @@ std::vector<MappedFrame> FramesMatchedAt(const std::vector<int>& numbers, float 
   return frames;
 }
 
-// Ends a program that saves a map while it writes scans.bin, which is larger than matched.bin here.
-TEST_F(MappedFilesTest, AKilledSaveLeavesTheEarlierMapWhole) {
-  const std::vector<MappedFrame> earlier = FramesMatchedAt({0, 1}, 3.0F);
-  WriteMapped(folder_, earlier);
-  std::vector<MappedFrame> later = FramesMatchedAt({0, 1, 2}, 4.0F);
+constexpr rlim_t kMostBytes = 1000;  // of a file, where a save is to end
+
+// Makes scans.bin larger than that, and than matched.bin.
+std::vector<MappedFrame> WithManyBeams(std::vector<MappedFrame> frames) {
   Scan wide{.beams = {}, .max_range_m = 8.0};
   for (int i = 0; i < 1000; ++i) {
     wide.beams.push_back({0.001F * static_cast<float>(i), 2.0F, 0.0F, 2.0F, true});
   }
-  for (MappedFrame& frame : later) frame.obstacles = ScanArchive().Keep(wide);
+  for (MappedFrame& frame : frames) frame.obstacles = ScanArchive().Keep(wide);
+  return frames;
+}
+
+// Ends a program that saves a map while it writes scans.bin.
+TEST_F(MappedFilesTest, AKilledSaveLeavesTheEarlierMapWhole) {
+  const std::vector<MappedFrame> earlier = FramesMatchedAt({0, 1}, 3.0F);
+  WriteMapped(folder_, earlier);
+  const std::vector<MappedFrame> later = WithManyBeams(FramesMatchedAt({0, 1, 2}, 4.0F));
   const auto save_and_be_killed = [&] {
-    constexpr rlim_t kMostBytes = 1000;  // of a file; the signal SIGXFSZ comes beyond it
     const rlimit limit{kMostBytes, kMostBytes};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
+    ::setrlimit(RLIMIT_FSIZE, &limit);  // the signal SIGXFSZ comes beyond it
     WriteMapped(folder_, later);
   };
   EXPECT_EXIT(save_and_be_killed(), testing::KilledBySignal(SIGXFSZ), "");
@@ -142,6 +152,49 @@ TEST_F(MappedFilesTest, AKilledSaveLeavesTheEarlierMapWhole) {
   EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{3.0F, 3.0F}));
   WriteMapped(folder_, later);
   EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{4.0F, 4.0F, 4.0F}));
+}
+
+// As a full disk does: the earlier map stays, and no half of the new one takes up what room there
+// is.
+TEST_F(MappedFilesTest, ASaveThatFailsLeavesTheEarlierMapAlone) {
+  WriteMapped(folder_, FramesMatchedAt({0, 1}, 3.0F));
+  const auto files = [&] {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_)) {
+      names.push_back(entry.path().filename());
+    }
+    return names;
+  };
+  const auto fail_to_save = [&] {
+    const std::vector<MappedFrame> later = WithManyBeams(FramesMatchedAt({0, 1, 2}, 4.0F));
+    ::signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{kMostBytes, kMostBytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      WriteMapped(folder_, later);
+    } catch (const std::runtime_error& error) {
+      const bool says = error.what() == File("scans.bin") + ": cannot be written: File too large";
+      std::_Exit(says ? 0 : 1);
+    }
+    std::_Exit(2);
+  };
+  EXPECT_EXIT(fail_to_save(), testing::ExitedWithCode(0), "");
+  EXPECT_THAT(files(), UnorderedElementsAre("scans.bin", "matched.bin"));
+  EXPECT_EQ(MatchedRangesOf(folder_), (std::vector<float>{3.0F, 3.0F}));
+}
+
+TEST_F(MappedFilesTest, AFolderThatCannotBeWrittenIsNamed) {
+  if (::mount("tmpfs", folder_.c_str(), "tmpfs", MS_RDONLY, "") != 0) {
+    GTEST_SKIP() << "only root may mount";
+  }
+  std::string said;
+  try {
+    WriteMapped(folder_, FramesOf({0}));
+  } catch (const std::runtime_error& error) {
+    said = error.what();
+  }
+  ::umount2(folder_.c_str(), MNT_DETACH);
+  EXPECT_EQ(said, File("scans.bin") + ": cannot be written: Read-only file system");
 }
 
 // The states between the steps of a save, each the files of two maps mixed.
