@@ -2,6 +2,7 @@
 // loops, and writes the map for Nav2. Usage: depth_mapper FOLDER (to write)
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <limits>
 #include <string>
@@ -58,20 +59,7 @@ DepthImage Look(const Pose3& world_from_camera) {
   return image;
 }
 
-int main(int argc, char** argv) {
-  const std::string first = argc > 1 ? argv[1] : "";
-  const bool asks = first == "--help" || first == "-h";
-  if (argc != 2 || asks) {
-    std::fprintf(asks ? stdout : stderr, "usage: depth_mapper FOLDER   (to write)\n");
-    return asks ? 0 : 2;
-  }
-  const std::filesystem::path folder = first;
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) {
-    std::fprintf(stderr, "%s: %s\n", folder.c_str(), failure.message().c_str());
-    return 2;
-  }
+int MapRoom(const std::filesystem::path& folder) {
   MapperOptions options;
   options.scan.beams = kCamera.width_px;  // not more than there are columns
   options.scan.min_range_m = 0.3;
@@ -117,4 +105,26 @@ int main(int argc, char** argv) {
   std::printf("%s: %d x %d cells; the last pose is %.1f mm off\n", folder.c_str(),
               result.map.geometry.width_cells, result.map.geometry.height_cells, 1e3 * error_m);
   return error_m < 0.02 ? 0 : 1;
+}
+
+int main(int argc, char** argv) {
+  const std::string first = argc > 1 ? argv[1] : "";
+  const bool asks = first == "--help" || first == "-h";
+  if (argc != 2 || asks) {
+    std::fprintf(asks ? stdout : stderr, "usage: depth_mapper FOLDER   (to write)\n");
+    return asks ? 0 : 2;
+  }
+  const std::filesystem::path folder = first;
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) {
+    std::fprintf(stderr, "%s: %s\n", folder.c_str(), failure.message().c_str());
+    return 2;
+  }
+  try {
+    return MapRoom(folder);
+  } catch (const std::exception& error) {  // such as a full disk
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }

@@ -4,10 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <fstream>
 #include <iomanip>
 #include <limits>
+#include <memory>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -15,6 +18,7 @@
 #include "mapper/core/level.h"
 #include "mapper/incremental_mapper.h"
 #include "mapper/io/carmen_log.h"
+#include "mapper/io/file.h"
 #include "mapper/io/mapped_files.h"
 #include "mapper/map_start.h"
 
@@ -98,8 +102,19 @@ std::vector<Frame> Drive(int first_step) {
 void Save(const std::string& folder, const IncrementalMapper& mapper, const FrameReport& newest) {
   WriteMapped(folder, mapper.CurrentMapped());
   const Pose2& pose = newest.map_from_slam;  // of the same frame as the map
-  std::ofstream file(folder + "/map_from_slam.txt");
-  file << std::setprecision(17) << pose.x_m << ' ' << pose.y_m << ' ' << pose.yaw_rad << '\n';
+  // Whole or not at all, as the map: a power cut must not leave half a file.
+  WriteFileToDisk(folder + "/map_from_slam.txt", [&pose](std::ostream& file) {
+    file << std::setprecision(17) << pose.x_m << ' ' << pose.y_m << ' ' << pose.yaw_rad << '\n';
+  });
+}
+
+// A full disk must not end a drive: the map that was saved before is still whole.
+void SaveOrGoOn(const std::string& folder, const IncrementalMapper& mapper) {
+  try {
+    WriteMapped(folder, mapper.CurrentMapped());
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "not saved: %s\n", error.what());
+  }
 }
 
 PriorMap Saved(const std::string& folder) {
@@ -111,26 +126,14 @@ PriorMap Saved(const std::string& folder) {
   return prior;
 }
 
-int main(int argc, char** argv) {
-  const std::string folder = argc > 1 ? argv[1] : "";
-  const bool asks = folder == "--help" || folder == "-h";
-  if (argc != 2 || asks) {
-    std::fprintf(asks ? stdout : stderr, "usage: second_drive FOLDER   (to write)\n");
-    return asks ? 0 : 2;
-  }
-  std::error_code failure;
-  std::filesystem::create_directories(folder, failure);
-  if (failure) {
-    std::fprintf(stderr, "%s: %s\n", folder.c_str(), failure.message().c_str());
-    return 2;
-  }
+int MapTwice(const std::string& folder) {
   const MapperOptions options;
 
   IncrementalMapper first(options, std::nullopt);
   for (const Frame& frame : Drive(0)) {
     first.AddFrame(frame);
     // Now and then, so that a flat battery does not cost the map.
-    if (frame.index % 100 == 99) WriteMapped(folder, first.CurrentMapped());
+    if (frame.index % 100 == 99) SaveOrGoOn(folder, first);
   }
   WriteMapped(folder, first.Finish().mapped);
 
@@ -164,4 +167,25 @@ int main(int argc, char** argv) {
   std::printf("%s: %d scans; the second drive's last pose is %.1f mm off\n", folder.c_str(),
               static_cast<int>(third.Finish().mapped.size()), 1e3 * error_m);
   return error_m < 0.03 ? 0 : 1;
+}
+
+int main(int argc, char** argv) {
+  const std::string folder = argc > 1 ? argv[1] : "";
+  const bool asks = folder == "--help" || folder == "-h";
+  if (argc != 2 || asks) {
+    std::fprintf(asks ? stdout : stderr, "usage: second_drive FOLDER   (to write)\n");
+    return asks ? 0 : 2;
+  }
+  std::error_code failure;
+  std::filesystem::create_directories(folder, failure);
+  if (failure) {
+    std::fprintf(stderr, "%s: %s\n", folder.c_str(), failure.message().c_str());
+    return 2;
+  }
+  try {
+    return MapTwice(folder);
+  } catch (const std::exception& error) {  // such as a full disk
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
 }
