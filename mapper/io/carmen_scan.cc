@@ -29,17 +29,15 @@ Beam BeamOf(double bearing_rad, double range_m, const LaserReach& reach,
   return beam;
 }
 
-bool IsGap(const Beam& beam) { return !beam.hit && beam.clear_to_m > 0.0F; }
-
 // The range of the nearer hit beside the gap of beams [first, after) if the gap is too narrow there
 // for an opening, else empty. Next to an end of the scan there is one hit; the gap is taken to end
-// one step beyond the last beam.
+// one step beyond the last beam. Readings of no data belong to a gap: beside a fault there is often
+// another one, which must not open the wall.
 std::optional<float> BarOf(const std::vector<Beam>& beams, std::size_t first, std::size_t after,
                            double narrowest_m) {
   if (after - first == beams.size()) return {};
   const Beam& right = beams[first > 0 ? first - 1 : after];
   const Beam& left = beams[after < beams.size() ? after : first - 1];
-  if (!right.hit || !left.hit) return {};
   const float nearer_m = std::min(left.range_m, right.range_m);
   const double step_rad = std::abs(beams[1].bearing_rad - beams[0].bearing_rad);
   const double width_rad = static_cast<double>(after - first + 1) * step_rad;
@@ -51,9 +49,9 @@ std::optional<float> BarOf(const std::vector<Beam>& beams, std::size_t first, st
 void NarrowGaps(Scan& scan, double narrowest_m) {
   std::vector<Beam>& beams = scan.beams;
   for (std::size_t first = 0; first < beams.size(); ++first) {
-    if (!IsGap(beams[first])) continue;
+    if (beams[first].hit) continue;
     std::size_t after = first;
-    while (after < beams.size() && IsGap(beams[after])) ++after;
+    while (after < beams.size() && !beams[after].hit) ++after;
     if (const auto bar_m = BarOf(beams, first, after, narrowest_m)) {
       for (std::size_t i = first; i < after; ++i) {
         beams[i].clear_to_m = std::min(beams[i].clear_to_m, *bar_m);

@@ -24,6 +24,15 @@ TEST(CarmenScan, NarrowGapsWithoutReturnClearNoFartherThanTheHitsBeside) {
   }
   for (const std::size_t i : {5U, 8U, 11U}) EXPECT_EQ(scan.beams[i].clear_to_m, 5.0F) << i;
   EXPECT_EQ(scan.beams[13].clear_to_m, 4.0F);
+  // Two faults side by side, of which one says nothing: 0.21 m again. Five: 0.42 m.
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double no_data : {0.0, nan}) {
+    line.range_m = {4, no_data, 90, 5, 4, 90, no_data, 90, 90, no_data, 4};
+    const Scan faults = ScanOf(line, {});
+    EXPECT_EQ(faults.beams[1].clear_to_m, 0.0F);
+    EXPECT_EQ(faults.beams[2].clear_to_m, 4.0F);
+    for (const std::size_t i : {5U, 7U, 8U}) EXPECT_EQ(faults.beams[i].clear_to_m, 5.0F) << i;
+  }
   line.range_m = {90, 90, 90, 90, 4, 4, 4};
   EXPECT_EQ(ScanOf(line, {}).beams[0].clear_to_m, 5.0F);
   line.range_m = {90, 90, 90};
