@@ -298,7 +298,7 @@ void AddAblate(Program& program) {
       "depthgrid ablate living_room --seeds 10 -o /tmp/ablation", &Ablate);
   app->add_option("experiment", arguments->experiment, "Shipped experiment or a YAML file")
       ->required();
-  app->add_option("--seeds", arguments->seeds, "Number of seeds; fewer than 6 prove nothing")
+  app->add_option("--seeds", arguments->seeds, "Number of seeds; fewer than 8 prove nothing")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   AddSeed(*app, "--first-seed", arguments->first_seed, "The first seed");

@@ -71,7 +71,7 @@ function initStages() {
 }
 
 initTheme();
-byId("subtitle").textContent = `${ABLATION.seeds} ${ABLATION.seeds === 1 ? "seed" : "seeds"}${ABLATION.seeds < 6 ? " (fewer than 6 prove nothing)" : ""}${ABLATION.of ? `: ${ABLATION.of}` : ""}`;
+byId("subtitle").textContent = `${ABLATION.seeds} ${ABLATION.seeds === 1 ? "seed" : "seeds"}${ABLATION.seeds < 8 ? " (fewer than 8 prove nothing)" : ""}${ABLATION.of ? `: ${ABLATION.of}` : ""}`;
 if (ABLATION.changed) byId("changed").textContent = `Not the default: ${ABLATION.changed}`;
 initStages();
 initScores();
