@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "mapper/core/angle.h"
+
 namespace depthgrid {
 namespace {
 
@@ -34,6 +36,10 @@ constexpr std::int64_t kThinning = 8;
 // errors give 1; errors correlated by exp(-(d / L)^2 / 2) give at most .15 up to d = 2 L / 3 and .5
 // at 4 L / 3 (docs/math.md, "Errors that beams share").
 constexpr double kAlikeShare = 0.25;
+// Beams as far apart as a laser's err independently, as each is measured alone: where scans differ
+// more the farther apart their beams are, they show pillars and furniture. Stereo images have more
+// columns than this in any view that is wide enough to map with (docs/tried.md, "A recorded log").
+const auto kWidestAlikeRad = static_cast<float>(RadFromDeg(0.24));
 // A stride must leave at least this many beams.
 constexpr std::size_t kLeastBeams = 40;
 // Ranges within this many sigmas of the sensor's reach are skipped: the returns that differ most
@@ -55,6 +61,13 @@ double ValueBinLow(int bin) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(bin + kValueBinOffset) << 20);
 }
 
+// Whether the beams are close enough to share their errors.
+bool MayErrAlike(const Scan& scan) {
+  if (scan.beams.size() < 2) return false;
+  const float view = scan.beams.back().bearing_rad - scan.beams.front().bearing_rad;
+  return view < kWidestAlikeRad * static_cast<float>(scan.beams.size() - 1);
+}
+
 }  // namespace
 
 RangeNoise::RangeNoise(bool skips_alike) : skips_alike_(skips_alike) {
@@ -71,8 +84,8 @@ void RangeNoise::Add(const Scan& scan) {
     by_stride_[k].Refresh();
   }
   chosen_ = 0;
-  while (chosen_ + 1 < strides && scan.beams.size() >> (chosen_ + 1) >= kLeastBeams &&
-         AreAlike(chosen_)) {
+  while (chosen_ + 1 < strides && MayErrAlike(scan) &&
+         scan.beams.size() >> (chosen_ + 1) >= kLeastBeams && AreAlike(chosen_)) {
     ++chosen_;
   }
   if (!ShowNoise(chosen_)) chosen_ = 0;
