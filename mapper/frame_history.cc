@@ -100,17 +100,21 @@ double FrameHistory::LongestUsualWayM(const FrameRecord& since) const {
   return kFar * static_cast<double>(&newest() - &since) * UsualMotionSoFar().WayPerFrameM();
 }
 
-// Usual steps from the frame before to the newest.
-int FrameHistory::StepsToNewest() const {
+double FrameHistory::UsualStepBeforeNewest() const {
   constexpr std::size_t kRecentSteps = 15;
   std::array<double, kRecentSteps> steps_s;
   std::size_t count = 0;
-  for (std::size_t i = records_.size() - 2; i > 0 && count < kRecentSteps; --i) {
+  for (std::size_t i = records_.size() - 1; i-- > 1 && count < kRecentSteps;) {
     const double step_s = records_[i].stamp_s - records_[i - 1].stamp_s;
     if (step_s > 0.0) steps_s[count++] = step_s;
   }
+  return UsualStepS(std::span(steps_s).first(count));
+}
+
+// Usual steps from the frame before to the newest.
+int FrameHistory::StepsToNewest() const {
   const FrameRecord& before = records_[records_.size() - 2];
-  return StepsIn(newest().stamp_s - before.stamp_s, UsualStepS(std::span(steps_s).first(count)));
+  return StepsIn(newest().stamp_s - before.stamp_s, UsualStepBeforeNewest());
 }
 
 bool FrameHistory::HadPause() const {

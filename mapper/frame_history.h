@@ -59,6 +59,8 @@ class FrameHistory {
   // Frames that the newest motion counts as: more than one after a pause in which SLAM moved
   // (MovingStepsIn); 1 after a loss or in a new epoch.
   int FramesToNewest() const;
+  // The usual step before the newest frame, s; 0 while there was none.
+  double UsualStepBeforeNewest() const;
   // The mapped frame of the same epoch nearest in input order (possibly itself), at most `reach`
   // frames away; null if there is none.
   const FrameRecord* NearestMapped(const FrameRecord& record, int reach) const;

@@ -231,7 +231,7 @@ Prediction IncrementalMapper::State::Predict(const std::shared_ptr<const Scan>& 
   const StageTimer timer(clocks, report.times.match_us);
   const FrameRecord& record = history.newest();
   const Pose2 slam_from_base = BaseOf(*record.slam_from_camera);
-  filter.SetFrames(history.FramesToNewest());
+  filter.SetFrames(history.FramesToNewest(), history.UsualStepBeforeNewest());
   if (reference && !SameEpoch()) BeginEpoch(scan);
   filter_epoch = record.epoch;
   if (prior_start) {

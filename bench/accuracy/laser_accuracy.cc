@@ -20,6 +20,7 @@
 #include "eval/run/consistency.h"
 #include "mapper/core/cpu_clock.h"
 #include "mapper/core/level.h"
+#include "mapper/core/rng.h"
 #include "mapper/incremental_mapper.h"
 #include "sim/laser/odometry_noise.h"
 
@@ -63,7 +64,11 @@ struct PriorOptions {
   int slips = 0;           // evenly spread, to either side in turn
   double slip_deg = 5.0;   // within a frame
   double slip_m = 0.0;     // and forward
+  double late_s = 0.0;     // standard deviation of how late or early each pose is read
 };
+
+// Frames a second of the true poses.
+constexpr double kRateHz = 30.0;
 
 std::vector<Pose2> WithSlips(const std::vector<Pose2>& odometry, const PriorOptions& prior) {
   std::vector<Pose2> slipped = {odometry.front()};
@@ -81,9 +86,37 @@ std::vector<Pose2> WithSlips(const std::vector<Pose2>& odometry, const PriorOpti
   return slipped;
 }
 
+// Odometry that is not read when the scan is taken, as without a common clock.
+std::vector<Pose2> ReadLate(const std::vector<Pose2>& odometry, double late_s, int seed) {
+  RandomStream random(static_cast<std::uint64_t>(seed), RandomStage::kTest);
+  std::vector<Pose2> read;
+  const auto last = static_cast<double>(odometry.size() - 1);
+  for (std::size_t k = 0; k < odometry.size(); ++k) {
+    const double at =
+        std::clamp(static_cast<double>(k) - kRateHz * late_s * random.Normal(), 0.0, last);
+    const auto before = static_cast<std::size_t>(at);
+    const Pose2& from = odometry[before];
+    const Pose2& to = odometry[std::min(before + 1, odometry.size() - 1)];
+    read.push_back(
+        from * Pose2::FromVector((at - static_cast<double>(before)) * Between(from, to).vector()));
+  }
+  read.front() = odometry.front();
+  return read;
+}
+
 std::vector<Pose2> PriorOf(const std::vector<Pose2>& truth, const PriorOptions& prior, int seed) {
   const auto drifting = DisturbOdometry(truth, prior.odometry, static_cast<std::uint64_t>(seed));
-  return WithSlips(PerfectAtFirst(truth, drifting, prior.perfect_frames), prior);
+  const auto slipped = WithSlips(PerfectAtFirst(truth, drifting, prior.perfect_frames), prior);
+  return prior.late_s > 0.0 ? ReadLate(slipped, prior.late_s, seed) : slipped;
+}
+
+// Every so many poses.
+std::vector<Pose2> Thinned(const std::vector<Pose2>& poses, int every) {
+  std::vector<Pose2> thinned;
+  for (std::size_t k = 0; k < poses.size(); k += static_cast<std::size_t>(every)) {
+    thinned.push_back(poses[k]);
+  }
+  return thinned;
 }
 
 struct Experiment {
@@ -94,6 +127,7 @@ struct Experiment {
   int first_seed = 1;
   int seeds = 3;
   int threads = 2;
+  int every = 1;  // so many true poses a frame
   bool verbose = false;
 };
 
@@ -113,9 +147,11 @@ void PrintFrame(std::size_t k, const Pose2& error, const FrameReport& report) {
       DegFromRad(report.innovation[2]));
 }
 
-Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Experiment& experiment,
+Run Map(const LaserWorld& world, const std::vector<Pose2>& all_true, const Experiment& experiment,
         int seed) {
-  const std::vector<Pose2> odometry = PriorOf(truth, experiment.prior, seed);
+  const std::vector<Pose2> truth = Thinned(all_true, experiment.every);
+  const std::vector<Pose2> odometry =
+      Thinned(PriorOf(all_true, experiment.prior, seed), experiment.every);
   const auto frames = static_cast<double>(truth.size());
   IncrementalMapper mapper(experiment.mapper, std::nullopt, {ThreadCpuUs, SteadyUs});
   Run run;
@@ -125,7 +161,7 @@ Run Map(const LaserWorld& world, const std::vector<Pose2>& truth, const Experime
   for (std::size_t k = 0; k < truth.size(); ++k) {
     Frame frame;
     frame.index = static_cast<int>(k);
-    frame.stamp_s = static_cast<double>(k) / 30.0;
+    frame.stamp_s = static_cast<double>(k) * experiment.every / kRateHz;
     frame.scan = SimulatedScan(WithPeople(world, experiment.people, truth, k), truth[k],
                                experiment.laser, seed, static_cast<int>(k));
     frame.slam_from_camera = CameraOf(odometry[k], 0.0);
@@ -228,6 +264,11 @@ void AddOptions(CLI::App& app, Experiment& experiment) {
   app.add_option("--bias-time", prior.odometry.bias_time_frames)->check(FromTo(1, 1e6));
   app.add_option("--jitter", prior.odometry.jitter_m)->check(FromTo(0, 1));
   app.add_option("--jitter-deg", prior.odometry.jitter_deg)->check(FromTo(0, 45));
+  app.add_option("--late-s", prior.late_s,
+                 "standard deviation of how late or early odometry is read")
+      ->check(FromTo(0, 10));
+  app.add_option("--every", experiment.every, "frames of 30 a second that are used")
+      ->check(FromTo(1, 300));
   app.add_option("--perfect-frames", prior.perfect_frames, "the prior errs from this frame on only")
       ->check(FromTo(0, 1e9));
   app.add_option("--slips", prior.slips, "so often the prior turns within a frame, evenly spread")

@@ -16,9 +16,10 @@ class CorrectionFilter {
   explicit CorrectionFilter(const FusionOptions& options)
       : options_(options), gain_(options.gain) {}
 
-  // Number of frames from the last committed pose to the next: more than one after a pause. Used by
-  // mode `learned`; the others use the stamps.
-  void SetFrames(int frames) { tracker_.SetFrames(frames); }
+  // Number of frames from the last committed pose to the next: more than one after a pause; and how
+  // long a frame usually takes, s (0: not known). Used by mode `learned`; the others use the
+  // stamps.
+  void SetFrames(int frames, double usual_step_s) { tracker_.SetFrames(frames, usual_step_s); }
 
   // The pose in the map before matching. `slam_from_base` must be of the last committed pose's
   // epoch: their difference is taken as a motion.

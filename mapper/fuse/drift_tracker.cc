@@ -10,6 +10,10 @@ namespace {
 // Walk assumed before anything is learnt, large so that matches dominate: SLAM that drifts would
 // distort the young map, which is not corrected online.
 const Eigen::Vector3d kFirstWalk(0.003, 0.003, 0.003);
+// That is for frames up to this long, those of a camera at 30 Hz among them. It grows with the root
+// of longer ones, as a walk does (docs/tried.md, "A recorded laser log"), up to ten times as long.
+constexpr double kFirstWalkStepS = 0.035;
+constexpr double kMostSteps = 10.0;
 // Matches alone confirm any belief about SLAM (a map that follows SLAM agrees with it). So the
 // filter's walk is at least this share of the first walk along an axis, for this many observed
 // motions, and again after SLAM was found to drift until the next adjustment.
@@ -34,20 +38,29 @@ constexpr double kMostChi2 = 200.0;
 // SLAM (docs/tried.md, "A nearly perfect prior").
 constexpr double kMostMapChi2 = 60.0;
 
-MotionNoise FirstNoise() {
-  MotionNoise noise;
-  noise.walk = kFirstWalk;
-  return noise;
-}
-
 }  // namespace
 
 DriftTracker::DriftTracker() { StartAnew(); }
+
+Eigen::Vector3d DriftTracker::FirstWalk() const { return walk_growth_ * kFirstWalk; }
+
+MotionNoise DriftTracker::FirstNoise() const {
+  MotionNoise noise;
+  noise.walk = FirstWalk();
+  return noise;
+}
+
+void DriftTracker::SetFrames(int frames, double usual_step_s) {
+  frames_ = frames;
+  walk_growth_ = std::sqrt(std::clamp(usual_step_s / kFirstWalkStepS, 1.0, kMostSteps));
+  if (knows_nothing_) learnt_ = noise_ = FirstNoise();
+}
 
 void DriftTracker::StartAnew() {
   learner_ = MotionNoiseLearner();
   learnt_ = FirstNoise();
   noise_ = learnt_;
+  knows_nothing_ = true;
   next_fit_ = kFirstFit;
   spread_.reset();
   evidence_ = DriftEvidence();
@@ -152,6 +165,7 @@ void DriftTracker::Learn(const Pose2& motion, bool stands, const MatchResult& be
                          const MatchResult& now) {
   learner_.AddMatches(motion, stands, before, now);
   if (learner_.motions() < next_fit_) return;
+  knows_nothing_ = false;
   learnt_ = learner_.Fit(FirstNoise());
   noise_ = learnt_;
   noise_.walk *= kCaution;
@@ -160,7 +174,7 @@ void DriftTracker::Learn(const Pose2& motion, bool stands, const MatchResult& be
   for (int axis = 0; axis < 3; ++axis) {
     if (!ConfirmsItself(axis)) continue;
     const int seen = learner_.seen()[static_cast<std::size_t>(axis)];
-    const double least = kLeastOfFirstWalk * kFirstWalk[axis];
+    const double least = kLeastOfFirstWalk * FirstWalk()[axis];
     if (drifted_ || seen < kUnconfirmedMotions) {
       noise_.walk[axis] = std::max(noise_.walk[axis], least);
     }
@@ -177,10 +191,11 @@ bool DriftTracker::ConfirmsItself(int axis) const {
   if (!spread_) return true;
   if (spread_->IsSure()) return false;
   return !spread_->Tells(axis) ||
-         std::sqrt(spread_->frames) * spread_->sigma[axis] > kFirstWalk[axis];
+         std::sqrt(spread_->frames) * spread_->sigma[axis] > FirstWalk()[axis];
 }
 
 void DriftTracker::BoundMotion(const MotionSpread& spread) {
+  knows_nothing_ = false;
   spread_ = spread;
   drifted_ = false;
   evidence_ = DriftEvidence();

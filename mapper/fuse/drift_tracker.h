@@ -15,8 +15,9 @@ class DriftTracker {
  public:
   DriftTracker();
 
-  // Number of frames from the last committed pose to the next: more than one after a pause.
-  void SetFrames(int frames) { frames_ = frames; }
+  // Number of frames from the last committed pose to the next: more than one after a pause; and how
+  // long a frame usually takes, s (0: not known).
+  void SetFrames(int frames, double usual_step_s);
   Prediction Predict(const Pose2& slam_from_base) const;
   FusedPose Fuse(const Pose2& slam_from_base, const MatchResult& match) const;
   // Takes the fused pose as state. If it is not what Fuse() returns for the match, it was set from
@@ -57,6 +58,8 @@ class DriftTracker {
   FilterStep StepTo(const Pose2& slam_from_base, const Pose2& predicted) const;
   void Learn(const Pose2& motion, bool stands, const MatchResult& before, const MatchResult& now);
   bool ConfirmsItself(int axis) const;
+  Eigen::Vector3d FirstWalk() const;
+  MotionNoise FirstNoise() const;
   void BoundLearnt();  // by the spread, if known
   void TestBound(const Prediction& prediction, const MatchResult& match);
   void StartAnew();
@@ -73,7 +76,9 @@ class DriftTracker {
   DriftState state_;
   std::optional<Last> last_;
   Standing standing_;
-  int frames_ = 1;  // from last_ to the next pose
+  int frames_ = 1;             // from last_ to the next pose
+  double walk_growth_ = 1.0;   // of the first walk in long frames
+  bool knows_nothing_ = true;  // of SLAM's noise
 };
 
 }  // namespace depthgrid

@@ -38,7 +38,8 @@ constexpr std::int64_t kThinning = 8;
 constexpr double kAlikeShare = 0.25;
 // Beams as far apart as a laser's err independently, as each is measured alone: where scans differ
 // more the farther apart their beams are, they show pillars and furniture. Stereo images have more
-// columns than this in any view that is wide enough to map with (docs/tried.md, "A recorded log").
+// columns than this in any view that is wide enough to map with (docs/tried.md, "A recorded laser
+// log").
 const auto kWidestAlikeRad = static_cast<float>(RadFromDeg(0.24));
 // A stride must leave at least this many beams.
 constexpr std::size_t kLeastBeams = 40;

@@ -95,6 +95,23 @@ TEST(DriftTracker, BelievesAPriorThatTheAdjustmentFoundPerfect) {
   EXPECT_LT(bound.noise().walk.x(), 2.1e-5 * std::sqrt(6.0));
 }
 
+// The standard deviation of a motion that nothing is known of, in frames that last so long.
+double FirstSigmaM(double usual_step_s) {
+  DriftTracker tracker;
+  tracker.Commit({}, {}, Eigen::Matrix3d::Zero(), {});
+  tracker.SetFrames(1, usual_step_s);
+  return std::sqrt(tracker.Predict({0.1, 0.0, 0.0}).covariance(0, 0));
+}
+
+TEST(DriftTracker, InLongFramesAnUnknownSlamErrsMoreAsAWalkDoes) {
+  const double at_30_hz = FirstSigmaM(1.0 / 30.0);
+  EXPECT_GT(at_30_hz, 0.0);
+  EXPECT_EQ(FirstSigmaM(0.0), at_30_hz);
+  EXPECT_EQ(FirstSigmaM(1.0 / 60.0), at_30_hz);
+  EXPECT_NEAR(FirstSigmaM(0.14) / at_30_hz, 2.0, 1e-9);
+  EXPECT_EQ(FirstSigmaM(5.0), FirstSigmaM(60.0));
+}
+
 TEST(DriftTracker, BeginsWithWhatAnotherHasLearnt) {
   DriftTracker first, second;
   Pose2 slam;

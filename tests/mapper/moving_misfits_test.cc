@@ -156,7 +156,7 @@ TEST(MovingMisfits, AreJudgedByTheNewestMotionAlone) {
   ASSERT_TRUE(next.motion_covariance);
   EXPECT_GT(next.covariance(0, 0), 0.25);
   EXPECT_NEAR((*next.motion_covariance)(0, 0), 0.003 * 0.003, 1e-12);
-  filter.SetFrames(30);  // after a pause
+  filter.SetFrames(30, 0.0);  // after a pause
   EXPECT_FALSE(filter.Predict(slam, 1.0).motion_covariance);
 }
 

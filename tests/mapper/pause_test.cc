@@ -123,7 +123,7 @@ TEST(DriftTracker, BelievesSlamsMotionOverAPauseLess) {
   match.information = 1e10 * Eigen::Matrix3d::Identity();
   tracker.Commit({}, {}, Eigen::Matrix3d::Zero(), match);
   const double variance = tracker.Predict({0.1, 0.0, 0.0}).covariance(0, 0);
-  tracker.SetFrames(25);
+  tracker.SetFrames(25, 0.0);
   const double paused = tracker.Predict({0.1, 0.0, 0.0}).covariance(0, 0);
   EXPECT_GT(paused, 20.0 * variance);
   // The next one is one frame again.

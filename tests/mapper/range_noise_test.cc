@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "mapper/core/angle.h"
 #include "mapper/core/median.h"
 #include "mapper/core/rng.h"
 #include "mapper/surfel/scan_surfels.h"
@@ -110,6 +111,30 @@ TEST(RangeNoise, OfBeamsThatErrVerySmoothlyFewCount) {
     for (int i = 0; i < 40; ++i) noise.Add(WallWithNoise(random, length, sigma));
     EXPECT_EQ(noise.stride(), length > 6.0 ? 16 : 8) << length;
     EXPECT_GT(noise.RelativeSigma(kRangeM), 0.2 * sigma) << length;
+  }
+}
+
+// Each beam of a laser is measured alone, so what beams far apart show more of than neighbours is
+// the shape of the room.
+TEST(RangeNoise, WhereWallsAreCurvedAllOfALasersBeamsCount) {
+  constexpr double kSigma = 0.001;
+  for (const double step_deg : {0.25, 0.5, 1.0}) {
+    RandomStream random(6, RandomStage::kTest);
+    RangeNoise noise;
+    for (int i = 0; i < 40; ++i) {
+      Scan scan;
+      for (double bearing_deg = -90.0; bearing_deg <= 90.0; bearing_deg += step_deg) {
+        const double bearing_rad = RadFromDeg(bearing_deg);
+        const double range_m = 8.0 + 1.5 * std::sin(12.0 * bearing_rad + 0.1 * i);
+        Beam beam;
+        beam.bearing_rad = static_cast<float>(bearing_rad);
+        beam.range_m = static_cast<float>(range_m * (1.0 + kSigma * random.Normal()));
+        beam.hit = true;
+        scan.beams.push_back(beam);
+      }
+      noise.Add(scan);
+      EXPECT_EQ(noise.stride(), 1) << step_deg;
+    }
   }
 }
 
