@@ -17,7 +17,8 @@ constexpr double kDefaultRelativeSigma = 0.01;
 // No sensor is better (0.2 mm at 1 m), and weights stay finite for simulated scans without noise.
 constexpr double kMinRelativeSigma = 2e-4;
 // The median of |x| of a normal variable is 0.6745 sigma; a second difference has sqrt(6) sigma.
-constexpr double kSigmaOfMedianDifference = 1.0 / (0.674489750196 * 2.449489742783);
+constexpr double kNormalMedian = 0.674489750196;
+constexpr double kSigmaOfMedianDifference = 1.0 / (kNormalMedian * 2.449489742783);
 // A range bin with fewer samples borrows from its neighbours.
 constexpr std::uint32_t kMinSamples = 200;
 // With so many times as many samples well within the reach, the first value does no harm near it;
@@ -62,6 +63,45 @@ double ValueBinLow(int bin) {
   return std::bit_cast<float>(static_cast<std::uint32_t>(bin + kValueBinOffset) << 20);
 }
 
+using Histogram = std::array<std::uint32_t, RangeNoise::kValueBins>;
+
+// Of the lowest `count` values.
+double MedianOf(const Histogram& histogram, double count) {
+  const double half = 0.5 * count;
+  double below = 0.0;
+  std::size_t bin = 0;
+  while (below + histogram[bin] < half) below += histogram[bin++];
+  const double low = ValueBinLow(static_cast<int>(bin));
+  const double high = ValueBinLow(static_cast<int>(bin) + 1);
+  return low + (high - low) * (half - below) / histogram[bin];
+}
+
+// How many values are below this one.
+double CountBelow(const Histogram& histogram, double value) {
+  double below = 0.0;
+  for (int bin = 0; bin < RangeNoise::kValueBins && ValueBinLow(bin) < value; ++bin) {
+    const double width = ValueBinLow(bin + 1) - ValueBinLow(bin);
+    const double share = std::min(1.0, (value - ValueBinLow(bin)) / width);
+    below += share * histogram[static_cast<std::size_t>(bin)];
+  }
+  return below;
+}
+
+// The median of what noise makes of flat walls. Pillars, furniture and edges, of which there may be
+// more, make larger values, so those beyond three sigmas are left out again and again.
+double MedianOfNoise(const Histogram& histogram, double count) {
+  constexpr int kMostTurns = 30;
+  constexpr double kLeastLeftOut = 1e-3;  // of the values
+  double median = MedianOf(histogram, count);
+  for (int turn = 0; turn < kMostTurns; ++turn) {
+    const double within = CountBelow(histogram, 3.0 / kNormalMedian * median);
+    if (within > (1.0 - kLeastLeftOut) * count || within < kFewSamples) break;
+    count = within;
+    median = MedianOf(histogram, count);
+  }
+  return median;
+}
+
 // Whether the beams are close enough to share their errors.
 bool MayErrAlike(const Scan& scan) {
   if (scan.beams.size() < 2) return false;
@@ -79,14 +119,15 @@ RangeNoise::RangeNoise(bool skips_alike) : skips_alike_(skips_alike) {
 
 void RangeNoise::Add(const Scan& scan) {
   if (scans_++ >= kScansInFull && scans_ % kThinning != 0) return;
-  const std::size_t strides = skips_alike_ ? by_stride_.size() : 1;
+  const bool may_err_alike = MayErrAlike(scan);
+  const std::size_t strides = skips_alike_ && may_err_alike ? by_stride_.size() : 1;
   for (std::size_t k = 0; k < strides; ++k) {
     by_stride_[k].Add(scan, std::size_t{1} << k);
-    by_stride_[k].Refresh();
+    by_stride_[k].Refresh(!may_err_alike);
   }
   chosen_ = 0;
-  while (chosen_ + 1 < strides && MayErrAlike(scan) &&
-         scan.beams.size() >> (chosen_ + 1) >= kLeastBeams && AreAlike(chosen_)) {
+  while (chosen_ + 1 < strides && scan.beams.size() >> (chosen_ + 1) >= kLeastBeams &&
+         AreAlike(chosen_)) {
     ++chosen_;
   }
   if (!ShowNoise(chosen_)) chosen_ = 0;
@@ -133,7 +174,8 @@ std::uint64_t RangeNoise::Samples::Total() const {
 // Where much of what was seen is near the reach, sigma is learnt from few samples, if need be from
 // those: the first value may be ten times too large, and then hardly anything would ever count as
 // well within.
-void RangeNoise::Differences::Refresh() {
+void RangeNoise::Differences::Refresh(bool are_independent) {
+  independent = are_independent;
   tells_cutoff =
       LearnFrom(whole, kMinSamples, 1.0) || whole.Total() > kMuchWhole * near_cut.Total() ||
       LearnFrom(whole, kFewSamples, 1.0) || LearnFrom(near_cut, kFewSamples, kOfCutSigma);
@@ -145,14 +187,8 @@ bool RangeNoise::Differences::LearnFrom(const Samples& samples, std::uint32_t le
   for (std::size_t r = 0; r < kRangeBins; ++r) {
     known[r] = samples.count[r] >= least;
     if (!known[r]) continue;
-    const auto& histogram = samples.histogram[r];
-    const double half = 0.5 * samples.count[r];
-    double below = 0.0;
-    std::size_t bin = 0;
-    while (below + histogram[bin] < half) below += histogram[bin++];
-    const double low = ValueBinLow(static_cast<int>(bin));
-    const double high = ValueBinLow(static_cast<int>(bin) + 1);
-    const double median = low + (high - low) * (half - below) / histogram[bin];
+    const double median = independent ? MedianOfNoise(samples.histogram[r], samples.count[r])
+                                      : MedianOf(samples.histogram[r], samples.count[r]);
     shown_sigma[r] = factor * kSigmaOfMedianDifference * median;
     relative_sigma[r] = std::max(shown_sigma[r], kMinRelativeSigma);
   }

@@ -27,10 +27,11 @@ class RangeNoise {
   // Spacing of beams from which their errors are independent: 1, 2, 4, 8, 16 or 32.
   int stride() const { return 1 << chosen_; }
 
+  static constexpr int kValueBins = 160;  // of second differences: eight an octave from 2^-19 to 2
+
  private:
-  static constexpr int kRangeBins = 24;   // two an octave from 0.25 m: up to 1 km
-  static constexpr int kValueBins = 160;  // eight an octave from 2^-19: up to 2
-  static constexpr int kStrides = 6;      // 1 to 32
+  static constexpr int kRangeBins = 24;  // two an octave from 0.25 m: up to 1 km
+  static constexpr int kStrides = 6;     // 1 to 32
 
   // Second differences, by range and by size.
   struct Samples {
@@ -48,11 +49,14 @@ class RangeNoise {
     bool tells_cutoff = false;
 
     void Add(const Scan& scan, std::size_t stride);
-    void Refresh();
+    // `are_independent`: the beams err independently, and what else they show is left out.
+    void Refresh(bool are_independent);
     bool Knows(std::size_t range_bin) const;
     // Learns `factor` times what the bins with at least `least` samples show; false where there is
     // none.
     bool LearnFrom(const Samples& samples, std::uint32_t least, double factor);
+
+    bool independent = false;
   };
   bool AreAlike(std::size_t power) const;
   bool ShowNoise(std::size_t power) const;

@@ -138,6 +138,30 @@ TEST(RangeNoise, WhereWallsAreCurvedAllOfALasersBeamsCount) {
   }
 }
 
+// Pillars and furniture are no noise.
+TEST(RangeNoise, OfALaserIsThatOfItsWalls) {
+  constexpr double kSigma = 0.002;
+  RandomStream random(7, RandomStage::kTest);
+  RangeNoise noise;
+  for (int i = 0; i < 40; ++i) {
+    Scan scan;
+    for (int k = 0; k < 180; ++k) {
+      const double bearing_rad = RadFromDeg(k - 89.5);
+      const bool on_wall = k % 60 < 40;
+      const double wall_m = 4.0 / std::cos(bearing_rad - RadFromDeg(k / 60 * 60 - 77.0));
+      const double step_m = std::exp(random.Uniform(std::log(0.003), std::log(3.0)));
+      const double range_m = on_wall ? wall_m : 3.5 + step_m;
+      Beam beam;
+      beam.bearing_rad = static_cast<float>(bearing_rad);
+      beam.range_m = static_cast<float>(range_m * (1.0 + kSigma * random.Normal()));
+      beam.hit = true;
+      scan.beams.push_back(beam);
+    }
+    noise.Add(scan);
+  }
+  EXPECT_NEAR(noise.RelativeSigma(4.1), kSigma, 0.5 * kSigma);
+}
+
 // What differs by less than any sensor errs by is no noise, however smooth it is.
 TEST(RangeNoise, OfExactRangesAllCount) {
   RandomStream random(5, RandomStage::kTest);
