@@ -126,8 +126,8 @@ std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<co
                     mapped.size(), *reference);
 }
 
-// Searches for a slip and, if there was one, begins an epoch at the corrected heading; else the
-// camera may have been carried elsewhere.
+// Searches for a slip and, if there was one, begins an epoch at the corrected heading; else SLAM's
+// pose may be late, or the camera may have been carried elsewhere.
 Prediction IncrementalMapper::State::AfterSlip(const FrameScans& scans,
                                                const Prediction& prediction, FrameReport& report) {
   const std::shared_ptr<const Scan>& scan = scans.matched;
@@ -142,7 +142,10 @@ Prediction IncrementalMapper::State::AfterSlip(const FrameScans& scans,
     }
     Match(scan, mended, report);
   }
-  if (!report.slipped) mended = AfterCarrying(scans, mended, report);
+  if (!report.slipped) {
+    MatchWhereMotionWentOn(scan, mended, report);
+    mended = AfterCarrying(scans, mended, report);
+  }
   slips.Placed(history.newest(), scan, report.match);
   return mended;
 }

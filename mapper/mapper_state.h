@@ -127,6 +127,9 @@ struct IncrementalMapper::State {
   Prediction Predict(const std::shared_ptr<const Scan>& scan, FrameReport& report);
   void Match(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
              FrameReport& report);
+  void MatchWhereMotionWentOn(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
+                              FrameReport& report);
+  std::optional<Pose2> WhereMotionWentOn() const;
   OverlapEachWay SeenBeforeAt(const Pose2& map_from_base, const FrameScans& scans);
   std::optional<double> GapWithinEpoch() const;
   bool LooksForJumps(const FrameScans& scans) const;
