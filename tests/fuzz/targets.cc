@@ -11,6 +11,7 @@
 #include "mapper/core/error.h"
 #include "mapper/grid/map_drawing.h"
 #include "mapper/io/camera_formats.h"
+#include "mapper/io/camera_mount.h"
 #include "mapper/io/carmen_log.h"
 #include "mapper/io/config.h"
 #include "mapper/io/icl_folder.h"
@@ -102,6 +103,10 @@ bool TryLoopEvents(std::string_view bytes) {
 
 bool TryCamera(std::string_view bytes) {
   return Accepts([&] { ParseCameraDescription(std::string(bytes), "x"); });
+}
+
+bool TryCameraMount(std::string_view bytes) {
+  return Accepts([&] { Said(ParseCameraMount(std::string(bytes), "x")); });
 }
 
 bool TryFileList(std::string_view bytes) {
@@ -198,6 +203,7 @@ const std::vector<FuzzTarget>& FuzzTargets() {
                                                   {"trajectory", TryTrajectory},
                                                   {"loop_events", TryLoopEvents},
                                                   {"camera", TryCamera},
+                                                  {"camera_mount", TryCameraMount},
                                                   {"file_list", TryFileList},
                                                   {"ray_lengths", TryRayLengths},
                                                   {"carmen", TryCarmen},
