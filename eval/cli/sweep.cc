@@ -183,8 +183,10 @@ std::vector<EarlierSweep> EarlierOf(const SweepArguments& arguments, const Sweep
 SweepResults DoUnfinishedRuns(const SweepArguments& arguments, const SweepPlan& plan,
                               const std::vector<EarlierSweep>& earlier, SweepContext context) {
   const std::string& output = arguments.common.output;
+  std::vector<std::string> changes;
   SweepDatabase database =
-      OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force);
+      OpenOrCreateSweep(output, plan, ShardOf(arguments.shard), arguments.common.force, changes);
+  Warn(changes);
   // With `stop`, their results also affected the number of seeds.
   const std::vector<int> never_done = database.UnfinishedRuns();
   if (!plan.stop.Enabled()) database.PlanFailedAgain();
@@ -358,7 +360,7 @@ void SweepOnSlurm(const SweepArguments& arguments, const SweepPlan& plan,
   }
   bar.Clear();
   // Throws if it is another sweep.
-  const SweepDatabase database = OpenOrCreateSweep(output, plan, {}, false);
+  const SweepDatabase database = OpenFinishedSweep(output, plan);
   WriteResultsCsv(database, output);  // one killed after merging may have left none
   Summarise(database.Results());
 }

@@ -15,6 +15,7 @@
 #include "eval/output/build_id.h"
 #include "eval/output/result_files.h"
 #include "eval/sweep/sweep_identity.h"
+#include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
 #include "mapper/io/file.h"
 
@@ -126,8 +127,8 @@ void AddRuns(const SweepResults& results, std::map<int, FinishedRun>& runs) {
 // What to do about a folder that holds another sweep, and where only the values of the axes differ,
 // so that runs can be taken over.
 struct OtherSweepRemedies {
-  std::string of_any;
-  std::string of_axes;
+  const char* of_any;
+  const char* of_axes;
 };
 
 void RequireThisSweep(const std::string& folder, const Environment& there, const Environment& here,
@@ -136,6 +137,58 @@ void RequireThisSweep(const std::string& folder, const Environment& there, const
     RequireSameSweep(folder, there, here, {respect},
                      respect == "sweep" ? remedies.of_axes : remedies.of_any);
   }
+}
+
+constexpr OtherSweepRemedies kAnotherFolder = {
+    "choose another folder, or remove this one",
+    "choose another folder, where --reuse takes over its runs, or remove this one"};
+
+// Whether a run of the sweep counts in its table as it is. Where a `stop` looks at what failed,
+// that is not done anew.
+bool HasRunThatStays(const SweepResults& results, const std::vector<int>& runs, bool stops) {
+  for (std::size_t row = 0; row < results.rows(); ++row) {
+    if (!stops && !results.failures[row].empty()) continue;
+    if (std::find(runs.begin(), runs.end(), results.runs[row]) != runs.end()) return true;
+  }
+  return false;
+}
+
+// The names of the rooms that have changed, if none of them has a run that stays in the table.
+std::vector<std::string> RoomsToDoAnew(const SweepPlan& plan, const SweepDatabase& database,
+                                       const Environment& there, const Environment& here) {
+  const auto text = there.find("rooms");
+  if (text == there.end()) return {};
+  // Line by line, as files of one name in several folders may have each other's content now.
+  const std::vector<std::string> known = LinesOfRooms(text->second);
+  const std::vector<SweptRoom> rooms = RoomsIn(here.at("rooms"), plan);
+  if (known.size() != rooms.size()) return {};
+  const SweepResults results = database.Results();
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < rooms.size(); ++i) {
+    if (rooms[i].line == known[i]) continue;
+    if (HasRunThatStays(results, rooms[i].runs, plan.stop.Enabled())) return {};
+    names.push_back(rooms[i].names);
+  }
+  return names;
+}
+
+// The folder's sweep with what has changed in rooms of which no run counts yet.
+SweepDatabase GoneOnWith(const std::string& folder, const SweepPlan& plan, const Environment& here,
+                         std::vector<std::string>& warnings) {
+  SweepDatabase database = SweepDatabase::Open(folder);
+  Environment there = database.Environment();
+  const std::vector<std::string> anew = RoomsToDoAnew(plan, database, there, here);
+  if (!anew.empty()) there["rooms"] = here.at("rooms");
+  RequireThisSweep(folder, there, here, kAnotherFolder);
+  RequireSameSweep(folder, there, here, {"shard"}, kAnotherFolder.of_any);
+  if (anew.empty()) return database;
+  database.Note("scene_names", here.at("scene_names"));
+  database.Note("rooms", here.at("rooms"));  // last: until then a killed program begins again
+  warnings.push_back(
+      fmt::format("{}: a scene, path or movers have changed ({}); as no run there had succeeded, "
+                  "the sweep goes on with them as they are now",
+                  folder, fmt::join(anew, "; ")));
+  return database;
 }
 
 // Whether `whole` is what merging the parts gives, whose environment that is.
@@ -218,22 +271,22 @@ SweepLock::SweepLock(const std::string& folder) {
 SweepLock::~SweepLock() { ::close(file_); }
 
 SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan,
-                                const Shard& shard, bool force) {
+                                const Shard& shard, bool force,
+                                std::vector<std::string>& warnings) {
   const Environment here = EnvironmentOf(plan, shard);
-  if (SweepDatabase::Exists(folder)) {
-    SweepDatabase database = SweepDatabase::Open(folder);
-    RequireThisSweep(folder, database.Environment(), here,
-                     {"choose another folder, or remove this one",
-                      "choose another folder, where --reuse takes over its runs, or remove this "
-                      "one"});
-    RequireSameSweep(folder, database.Environment(), here, {"shard"},
-                     "choose another folder, or remove this one");
-    return database;
-  }
+  if (SweepDatabase::Exists(folder)) return GoneOnWith(folder, plan, here, warnings);
   if (!force && !IsEmptyFolder(folder)) {
     throw InputError(folder, "is not empty and holds no sweep; choose another folder, or --force");
   }
   return SweepDatabase::Create(folder, here, plan.parameter_keys, RunsOf(plan, shard));
+}
+
+SweepDatabase OpenFinishedSweep(const std::string& folder, const SweepPlan& plan) {
+  const Environment here = EnvironmentOf(plan, {});
+  SweepDatabase database = SweepDatabase::Open(folder);
+  RequireThisSweep(folder, database.Environment(), here, kAnotherFolder);
+  RequireSameSweep(folder, database.Environment(), here, {"shard"}, kAnotherFolder.of_any);
+  return database;
 }
 
 void WriteResultsCsv(const SweepDatabase& database, const std::string& folder) {

@@ -30,9 +30,14 @@ void RequireSweepNamesFree(const std::string& folder);
 
 // Opens or creates the database in `folder`, which exists. Throws InputError when the folder
 // contains another sweep, another part of it, or one of another version or instruction set, and
-// (unless `force`) when it contains something else.
+// (unless `force`) when it contains something else. A scene, path or movers may have changed if no
+// run of them has succeeded; then the sweep is one of the changed ones, with a warning. With a
+// `stop`, none may have failed either, as such runs stay.
 SweepDatabase OpenOrCreateSweep(const std::string& folder, const SweepPlan& plan,
-                                const Shard& shard, bool force);
+                                const Shard& shard, bool force, std::vector<std::string>& warnings);
+
+// Opens the database of a sweep whose failed runs are not done again: nothing may have changed.
+SweepDatabase OpenFinishedSweep(const std::string& folder, const SweepPlan& plan);
 
 // Adds this program's build and number of parallel jobs to those of the programs that have worked
 // on the sweep (`build` and `jobs` of the environment, "A, B"). Call it after planning failed runs

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <sstream>
 
 #include "eval/statistics/score_names.h"
 #include "eval/sweep/sweep_identity.h"
+#include "eval/sweep/sweep_rooms.h"
 #include "mapper/core/error.h"
 
 namespace depthgrid {
@@ -37,27 +37,23 @@ void RequireSameAxes(const std::string& folder, const SweepResults& earlier,
                                        fmt::join(there, ", "), fmt::join(here, ", "), kRemedy));
 }
 
-std::vector<std::string> LinesOf(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
-
-// A sweep's rooms, "names: hash" each, may be others than those there, but not other ones of the
-// same names.
+// What was done in a room that has changed since belongs to another sweep; runs that failed there
+// are not taken.
 void RequireSameRooms(const std::string& folder, const SweepEnvironment& there,
-                      const SweepEnvironment& here) {
-  const std::vector<std::string> rooms = LinesOf(ListIn(here, "rooms"));
-  for (const std::string& room : LinesOf(ListIn(there, "rooms"))) {
-    const std::string names = room.substr(0, room.rfind(':'));
-    const bool is_named = std::any_of(rooms.begin(), rooms.end(), [&](const std::string& other) {
-      return other.substr(0, other.rfind(':')) == names;
+                      const SweepEnvironment& here, const SweepPlan& plan,
+                      const std::vector<RunOutcome>& taken) {
+  const auto rooms = there.find("rooms");
+  if (rooms == there.end()) return;  // written by an earlier version
+  const std::vector<std::string> known = LinesOfRooms(rooms->second);
+  for (const SweptRoom& room : RoomsIn(here.at("rooms"), plan)) {
+    if (std::find(known.begin(), known.end(), room.line) != known.end()) continue;
+    const bool is_taken = std::any_of(taken.begin(), taken.end(), [&](const RunOutcome& outcome) {
+      return std::binary_search(room.runs.begin(), room.runs.end(), outcome.run);
     });
-    if (!is_named || std::find(rooms.begin(), rooms.end(), room) != rooms.end()) continue;
+    if (!is_taken) continue;
     throw InputError(folder, fmt::format("holds runs in a scene, path or movers that have changed "
                                          "({}); {}",
-                                         names, kRemedy));
+                                         room.names, kRemedy));
   }
 }
 
@@ -115,7 +111,6 @@ EarlierSweep EarlierSweepIn(const std::string& folder, const SweepPlan& plan) {
                    {"version", "instruction_set", "experiment", "given"}, kRemedy);
   RefuseStop(folder, results.environment, plan);
   RequireSameAxes(folder, results, plan);
-  RequireSameRooms(folder, results.environment, here);
   const auto rows = RowsByValues(results, plan.parameter_keys);
   EarlierSweep earlier;
   earlier.builds = ListIn(results.environment, "build");
@@ -126,6 +121,7 @@ EarlierSweep EarlierSweepIn(const std::string& folder, const SweepPlan& plan) {
     earlier.outcomes.push_back(
         {run.run, "", MetricsOfRow(results, found->second), TimesOfRow(results, found->second)});
   }
+  RequireSameRooms(folder, results.environment, here, plan, earlier.outcomes);
   return earlier;
 }
 

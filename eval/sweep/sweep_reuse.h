@@ -17,9 +17,9 @@ struct EarlierSweep {
 };
 
 // The outcomes in `folder`, which may be unfinished or a part, of all runs of `plan` that it has.
-// Throws InputError when it is no sweep's, when anything but the values of the axes differs (or a
-// scene, path or mover has changed since), and when either sweep has a `stop`, whose decisions
-// depend on all seeds.
+// Throws InputError when it is no sweep's, when anything but the values of the axes differs (or the
+// scene, path or movers of one of these runs have changed since), and when either sweep has a
+// `stop`, whose decisions depend on all seeds.
 EarlierSweep EarlierSweepIn(const std::string& folder, const SweepPlan& plan);
 
 // Records the outcomes of all of these runs that `database` has not finished, and the builds and

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "eval/doubts/truth_check.h"
 #include "eval/experiment/shipped.h"
@@ -24,20 +25,29 @@ std::string HashOrNone(const ExperimentOptions& options) {
   }
 }
 
-// The options of the first run in each room.
-std::vector<ExperimentOptions> RoomsOf(const SweepPlan& plan) {
+// The runs in each room, in the order of its first one.
+std::vector<std::vector<const PlannedRun*>> RunsByRoom(const SweepPlan& plan) {
   std::vector<std::size_t> naming;  // positions of the keys that choose room, path and movers
   for (std::size_t i = 0; i < plan.parameter_keys.size(); ++i) {
     const std::string& key = plan.parameter_keys[i];
     if (IsFileKey(key) || key == "movers") naming.push_back(i);
   }
-  std::set<std::vector<std::string>> seen;
-  std::vector<ExperimentOptions> rooms;
+  std::map<std::vector<std::string>, std::size_t> seen;
+  std::vector<std::vector<const PlannedRun*>> rooms;
   for (const PlannedRun& run : plan.runs) {
     std::vector<std::string> names;
     for (const std::size_t i : naming) names.push_back(run.values[i]);
-    if (seen.insert(std::move(names)).second) rooms.push_back(plan.OptionsOf(run));
+    const auto [room, is_new] = seen.try_emplace(std::move(names), rooms.size());
+    if (is_new) rooms.emplace_back();
+    rooms[room->second].push_back(&run);
   }
+  return rooms;
+}
+
+// The options of the first run in each room.
+std::vector<ExperimentOptions> RoomsOf(const SweepPlan& plan) {
+  std::vector<ExperimentOptions> rooms;
+  for (const auto& runs : RunsByRoom(plan)) rooms.push_back(plan.OptionsOf(*runs.front()));
   return rooms;
 }
 
@@ -93,12 +103,33 @@ std::string RoomsText(const SweepPlan& plan) {
   std::string text;
   for (const ExperimentOptions& options : RoomsOf(plan)) {
     const std::string scene = std::filesystem::path(options.scene).filename().string();
-    text += fmt::format("{}{}{}{}: {}\n", scene, options.trajectory.empty() ? "" : ", ",
-                        std::filesystem::path(options.trajectory).filename().string(),
-                        options.movers == kNoMovers ? "" : ", movers " + options.movers,
-                        HashOrNone(options));
+    std::string line = fmt::format("{}{}{}{}: {}", scene, options.trajectory.empty() ? "" : ", ",
+                                   std::filesystem::path(options.trajectory).filename().string(),
+                                   options.movers == kNoMovers ? "" : ", movers " + options.movers,
+                                   HashOrNone(options));
+    std::replace(line.begin(), line.end(), '\n', ' ');  // a file's name may have one
+    text += line + "\n";
   }
   return text;
+}
+
+std::vector<std::string> LinesOfRooms(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<SweptRoom> RoomsIn(const std::string& text, const SweepPlan& plan) {
+  const std::vector<std::string> lines = LinesOfRooms(text);
+  const auto runs_by_room = RunsByRoom(plan);
+  Require(lines.size() == runs_by_room.size(), "each room of a sweep has a line");
+  std::vector<SweptRoom> rooms;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    rooms.push_back({lines[i], lines[i].substr(0, lines[i].rfind(':')), {}});
+    for (const PlannedRun* run : runs_by_room[i]) rooms.back().runs.push_back(run->run);
+  }
+  return rooms;
 }
 
 std::string SceneNamesText(const SweepPlan& plan) {

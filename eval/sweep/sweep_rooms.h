@@ -12,6 +12,16 @@ namespace depthgrid {
 // changed room.
 std::string RoomsText(const SweepPlan& plan);
 
+struct SweptRoom {
+  std::string line;       // of RoomsText()
+  std::string names;      // of its files, in the line
+  std::vector<int> runs;  // of the plan that are in it, ascending
+};
+
+// The rooms of `text`, the plan's RoomsText(), in its order.
+std::vector<SweptRoom> RoomsIn(const std::string& text, const SweepPlan& plan);
+std::vector<std::string> LinesOfRooms(const std::string& text);
+
 // "VALUE = NAME" for each scene by the value of its key: the name that its file gives it. Scenes
 // that cannot be read are left out.
 std::string SceneNamesText(const SweepPlan& plan);
