@@ -111,10 +111,13 @@ void IncrementalMapper::State::Anchor(const EpochStart& start) {
   gap_variance += start.gap_share * start.gap_share;
 }
 
-bool IncrementalMapper::State::SearchesSlips() const {
+// Whether that little of a scan is explained tells that SLAM's pose is wrong.
+bool IncrementalMapper::State::TellsSlips() const {
   return options.loops.relocation.use && options.method == MapperMethod::kSurfel &&
-         CanTellSlips(options.fusion) && !fixed_map && !relocation.doubts();
+         CanTellSlips(options.fusion) && !relocation.doubts();
 }
+
+bool IncrementalMapper::State::SearchesSlips() const { return TellsSlips() && !fixed_map; }
 
 std::optional<Pose2> IncrementalMapper::State::TurnedTo(const std::shared_ptr<const Scan>& scan,
                                                         const Prediction& prediction,

@@ -22,22 +22,37 @@ constexpr double kLongestStepS = 0.7;
 
 }  // namespace
 
+// Where the map has a frame: what was mapped moves with the map, which a localised camera does not.
+// `back`: how many frames before the newest it was mapped.
+std::optional<Pose2> IncrementalMapper::State::InMap(const FrameRecord& record,
+                                                     std::size_t back) const {
+  if (fixed_map) {
+    if (relocation.unsettled() || !record.slam_from_camera) return std::nullopt;
+    return record.map_from_slam * BaseOf(*record.slam_from_camera);
+  }
+  const std::vector<MappedFrame>& frames = mapped.all();
+  if (frames.size() < back || frames[frames.size() - back].frame != record.index) {
+    return std::nullopt;
+  }
+  return frames[frames.size() - back].map_from_base;
+}
+
 // The newest frame's pose if the motion between the two poses before it, as they lie in the map,
 // went on: SLAM's poses have no part in it.
 std::optional<Pose2> IncrementalMapper::State::WhereMotionWentOn() const {
   const std::vector<FrameRecord>& records = history.records();
-  const std::vector<MappedFrame>& frames = mapped.all();
-  if (records.size() < 3 || frames.size() < 2) return std::nullopt;
-  const MappedFrame& before = frames[frames.size() - 2];
-  const MappedFrame& last = frames.back();
-  if (records[records.size() - 3].index != before.frame) return std::nullopt;
-  if (records[records.size() - 2].index != last.frame || !last.slam_motion) return std::nullopt;
+  if (records.size() < 3) return std::nullopt;
+  const FrameRecord& before = records[records.size() - 3];
+  const FrameRecord& last = records[records.size() - 2];
+  const std::optional<Pose2> map_from_before = InMap(before, 2);
+  const std::optional<Pose2> map_from_last = InMap(last, 1);
+  if (!map_from_before || !map_from_last || before.epoch != last.epoch) return std::nullopt;
   const double step_s = history.newest().stamp_s - last.stamp_s;
   const double step_before_s = last.stamp_s - before.stamp_s;
   if (step_s <= 0.0 || step_s > kLongestStepS || step_before_s <= 0.0) return std::nullopt;
   if (step_before_s > kLongestStepS) return std::nullopt;
-  const Pose2 motion = Between(before.map_from_base, last.map_from_base);
-  return last.map_from_base * Pose2::FromVector(step_s / step_before_s * motion.vector());
+  const Pose2 motion = Between(*map_from_before, *map_from_last);
+  return *map_from_last * Pose2::FromVector(step_s / step_before_s * motion.vector());
 }
 
 // Odometry that is read long before or after the scan was taken is decimetres off in one frame and
@@ -48,7 +63,7 @@ void IncrementalMapper::State::MatchWhereMotionWentOn(const std::shared_ptr<cons
                                                       FrameReport& report) {
   const double share = ShareExplained(report);
   const double usual = relocation.usual_share();
-  if (!SearchesSlips() || usual < kWhollySeen || share >= kFellShort * usual) return;
+  if (!TellsSlips() || usual < kWhollySeen || share >= kFellShort * usual) return;
   const std::optional<Pose2> there = WhereMotionWentOn();
   if (!there) return;
   const Pose2 off = Between(prediction.map_from_base, *there);

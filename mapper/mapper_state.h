@@ -130,6 +130,7 @@ struct IncrementalMapper::State {
   void MatchWhereMotionWentOn(const std::shared_ptr<const Scan>& scan, const Prediction& prediction,
                               FrameReport& report);
   std::optional<Pose2> WhereMotionWentOn() const;
+  std::optional<Pose2> InMap(const FrameRecord& record, std::size_t back) const;
   OverlapEachWay SeenBeforeAt(const Pose2& map_from_base, const FrameScans& scans);
   std::optional<double> GapWithinEpoch() const;
   bool LooksForJumps(const FrameScans& scans) const;
@@ -157,6 +158,7 @@ struct IncrementalMapper::State {
   bool SameEpoch() const;
   Pose2 CarriedOn() const;
   bool SearchesSlides() const;
+  bool TellsSlips() const;
   bool SearchesSlips() const;
   std::optional<Pose2> TurnedTo(const std::shared_ptr<const Scan>& scan,
                                 const Prediction& prediction, FrameReport& report);
