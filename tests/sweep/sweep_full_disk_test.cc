@@ -13,6 +13,8 @@ using ::testing::HasSubstr;
 namespace fs = std::filesystem;
 
 // `full` is a disk with room for the results, but not for the cache as well (20 images of 0.3 MB).
+// The sweeps that fill it have one job: of two images that are written at the same time neither may
+// fit, and what both leave is enough for the results.
 class FullDiskSweep : public SweepTableTest {
  protected:
   void SetUp() override {
@@ -32,7 +34,7 @@ class FullDiskSweep : public SweepTableTest {
 };
 
 TEST_F(FullDiskSweep, RemovesItsOwnCacheAndGoesOn) {
-  const Outcome outcome = Program("sweep ./sweep.yaml -o full/out");
+  const Outcome outcome = Program("sweep ./sweep.yaml -o full/out --jobs 1");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.err,
               AllOf(HasSubstr("full/out"), HasSubstr(" cannot be "),
@@ -43,7 +45,7 @@ TEST_F(FullDiskSweep, RemovesItsOwnCacheAndGoesOn) {
 
 // Other sweeps may use that folder.
 TEST_F(FullDiskSweep, NamesTheCacheThatWasChosen) {
-  const Outcome outcome = Program("sweep ./sweep.yaml -o full/out --cache full/cache");
+  const Outcome outcome = Program("sweep ./sweep.yaml -o full/out --cache full/cache --jobs 1");
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err,
               AllOf(HasSubstr(" cannot be "), HasSubstr("; if its cache full/cache ")));
