@@ -64,7 +64,7 @@ TEST_F(ProgramSignals, LeaveNothing) {
 
 // Soon, and whether or not somebody takes note of it.
 bool HasEnded(pid_t process) {
-  for (int tries = 0; tries < 1000; ++tries) {
+  for (int tries = 0; tries < 10000; ++tries) {
     if (::kill(process, 0) != 0) return true;
     std::ifstream stat("/proc/" + std::to_string(process) + "/stat");
     std::string number, name, state;

@@ -38,7 +38,7 @@ TEST_F(EndTaskTest, IsDoneBeforeTheProgramEndsAtOnce) {
       {
         const EndTask task = Noting("of_the_thread");
         started = true;
-        std::this_thread::sleep_for(std::chrono::milliseconds(50));
+        while (!Noted("of_the_end")) std::this_thread::yield();
         WriteFile(Path("begun_after"), "");  // waits for ever
       }
       WriteFile(Path("never"), "");
