@@ -24,16 +24,6 @@ constexpr double kWindowDeg = 10.0;
 constexpr double kSightM = 3.0;
 constexpr double kMaxTurnDeg = 100.0;
 
-// Path length to each frame.
-std::vector<double> WaysTo(const std::vector<MappedFrame>& frames) {
-  std::vector<double> way_m(frames.size(), 0.0);
-  for (std::size_t i = 1; i < frames.size(); ++i) {
-    const Pose2 step = Between(frames[i - 1].map_from_base, frames[i].map_from_base);
-    way_m[i] = way_m[i - 1] + step.translation().norm();
-  }
-  return way_m;
-}
-
 // The scans that contradict the map most.
 std::vector<int> Queries(std::vector<CrossedWalls> crossed, const std::vector<double>& way_m) {
   const auto more = [](const CrossedWalls& a, const CrossedWalls& b) {

@@ -17,6 +17,14 @@ bool Exceeds(const LaserNoise& noise, const GridOptions& options) {
 
 }  // namespace
 
+OccupancyMap DrawKept(const std::vector<MappedFrame>& frames, const GridOptions& options) {
+  MapDrawing drawing(options);
+  for (const MappedFrame& frame : frames) {
+    if (frame.kept()) drawing.Add(frame.frame, *frame.obstacles, frame.map_from_base);
+  }
+  return drawing.Map();
+}
+
 bool IsSharpened(const std::vector<MappedFrame>& frames, const GridOptions& options) {
   return Exceeds(LaserNoise(frames), options);
 }

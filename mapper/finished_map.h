@@ -9,6 +9,9 @@
 
 namespace depthgrid {
 
+// A MapDrawing of the kept frames' scans as they are.
+OccupancyMap DrawKept(const std::vector<MappedFrame>& frames, const GridOptions& options);
+
 // Whether a laser's noise spreads its hits beyond their cells, so that DrawFinished() sharpens
 // them.
 bool IsSharpened(const std::vector<MappedFrame>& frames, const GridOptions& options);

@@ -23,7 +23,7 @@ void LoopOptions::Visit(OptionsVisitor& v) {
            "with more mapped frames, loops only bend the path until all is adjusted at the end");
   v.Group("search", search, "loops that the mapper finds itself");
   v.Flag("join_doubled", join_doubled,
-         "whether places that the finished map shows twice are joined, where search.use is on");
+         "whether what the finished map shows twice is joined, where search.use is on");
   v.Group("slide", slide, "where the estimate is after a stretch that told little of it");
   v.Group("relocation", relocation, "where the camera is after SLAM was lost for seconds");
 }

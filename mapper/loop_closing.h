@@ -23,8 +23,8 @@ struct LoopOptions {
   // s at 17,700 (docs/tried.md, "Loops that hold up a frame").
   int bend_frames = 4000;
   LoopSearchOptions search;
-  // Whether places that the finished map shows twice are joined (doubled_walls.h); only where loops
-  // are searched for.
+  // Whether what the finished map shows twice is joined (map_joining.h); only where loops are
+  // searched for.
   bool join_doubled = true;
   SlideSearchOptions slide;
   RelocationOptions relocation;

@@ -71,13 +71,8 @@ FrameMoves MappedFrames::MoveTo(const std::vector<Pose2>& map_from_base) {
   Require(map_from_base.size() == frames_.size(), "one corrected pose a frame");
   FrameMoves moves;
   for (std::size_t i = 0; i < frames_.size(); ++i) {
-    MappedFrame& frame = frames_[i];
-    if (!frame.kept()) {
-      frame.match.map_from_base =
-          map_from_base[i] * Between(frame.map_from_base, frame.match.map_from_base);
-    }
-    moves.Include(frame.map_from_base, map_from_base[i]);
-    frame.map_from_base = map_from_base[i];
+    moves.Include(frames_[i].map_from_base, map_from_base[i]);
+    MoveFrame(map_from_base[i], frames_[i]);
   }
   keeping_.Rebuild(frames_);
   standing_.MapMoved();

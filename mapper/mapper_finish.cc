@@ -2,26 +2,12 @@
 #include <utility>
 
 #include "mapper/core/level.h"
-#include "mapper/doubled_walls.h"
 #include "mapper/finished_map.h"
 #include "mapper/frame_check.h"
-#include "mapper/grid/map_drawing.h"
+#include "mapper/map_joining.h"
 #include "mapper/mapper_state.h"
 
 namespace depthgrid {
-namespace {
-
-// Joins made in one map at most, and the share of the crossing beams that one may leave.
-constexpr int kMostJoins = 4;
-constexpr double kJoinedShare = 0.5;
-
-std::vector<MappedFrame> WithPoses(std::vector<MappedFrame> frames,
-                                   const std::vector<Pose2>& map_from_base) {
-  for (std::size_t i = 0; i < frames.size(); ++i) frames[i].map_from_base = map_from_base[i];
-  return frames;
-}
-
-}  // namespace
 
 MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& slam_final) {
   const std::vector<FrameRecord>& records = state_->history.records();
@@ -56,12 +42,6 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::Final(
   return mapped.empty() ? FinalAsItIs() : FinalByAdjusting();
 }
 
-std::vector<Pose2> IncrementalMapper::State::MappedPoses() const {
-  std::vector<Pose2> map_from_base;
-  for (const MappedFrame& frame : mapped.all()) map_from_base.push_back(frame.map_from_base);
-  return map_from_base;
-}
-
 // Without those that are only kept to find the place in a finished map.
 std::vector<MappedFrame> IncrementalMapper::State::FramesOfMap() const {
   std::vector<MappedFrame> frames = mapped.all();
@@ -71,7 +51,7 @@ std::vector<MappedFrame> IncrementalMapper::State::FramesOfMap() const {
 
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalAsItIs() const {
   FinalEstimate final;
-  final.map_from_base = MappedPoses();
+  final.map_from_base = PosesOf(mapped.all());
   final.guessed = relocation.GuessedParts(mapped.size());
   final.map_from_camera = FinalPoses(history, final.map_from_base, stands);
   return final;
@@ -94,33 +74,18 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalByAdjusti
 
 void IncrementalMapper::State::JoinDoubledWalls(FinalEstimate& final) const {
   if (!options.loops.join_doubled || !options.loops.use || !loop_search) return;
-  std::vector<PlanarLoop> loops = loop_closer.loops();
-  std::vector<MappedFrame> frames = WithPoses(mapped.all(), final.map_from_base);
-  final.map = Draw(frames);
-  std::vector<CrossedWalls> crossed = WallsCrossed(frames, *final.map, kDoubledSample);
-  const std::vector<GuessedPart> guessed = relocation.GuessedParts(mapped.size());
-  for (int joined = 0; joined < kMostJoins && CrossingShare(crossed) >= kDoubledShare; ++joined) {
-    auto loop =
-        LoopOfDoubledWalls(frames, crossed, options.loops.search, options.loops.overlap, guessed);
-    if (!loop) return;
-    loop->on_trial = true;
-    loops.push_back(*loop);
-    // The first one moves poses far, the second one is as accurate as the adjustment so far.
-    Adjustment adjustment;
-    for (const AdjustEffort effort : {AdjustEffort::kCloseLoops, AdjustEffort::kFinish}) {
-      adjustment = reference->Adjust(frames, loops, effort, {});
-      if (!adjustment.loop_accepted.back()) return;
-      frames = WithPoses(std::move(frames), adjustment.map_from_base);
-    }
-    OccupancyMap map = Draw(frames);
-    std::vector<CrossedWalls> remaining = WallsCrossed(frames, map, kDoubledSample);
-    if (CrossingShare(remaining) > kJoinedShare * CrossingShare(crossed)) return;
-    crossed = std::move(remaining);
-    loops.back().on_trial = false;
-    final.loops = Held(loops, adjustment);
-    final.map_from_base = std::move(adjustment.map_from_base);
-    final.map = std::move(map);
+  const MapJoining joining(options.loops, options.grid, *reference,
+                           relocation.GuessedParts(mapped.size()));
+  JoinedMap map =
+      joining.Examined(WithPoses(mapped.all(), final.map_from_base), loop_closer.loops());
+  std::optional<JoinedMap> joined = joining.Joined(map);
+  if (!joined) {
+    final.map = std::move(map.map);
+    return;
   }
+  final.loops = Held(joined->loops, *joined->adjustment);
+  final.map_from_base = std::move(joined->adjustment->map_from_base);
+  final.map = std::move(joined->map);
 }
 
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalOfSlam(
@@ -146,15 +111,11 @@ std::vector<std::optional<Pose3>> IncrementalMapper::CurrentPoses() const {
 }
 
 std::vector<MappedFrame> IncrementalMapper::CurrentMapped() const {
-  return KeptFrames(state_->FramesOfMap(), state_->MappedPoses());
+  return KeptFrames(state_->FramesOfMap(), PosesOf(state_->mapped.all()));
 }
 
 OccupancyMap IncrementalMapper::State::Draw(const std::vector<MappedFrame>& frames) const {
-  MapDrawing drawing(options.grid);
-  for (const MappedFrame& frame : frames) {
-    if (frame.kept()) drawing.Add(frame.frame, *frame.obstacles, frame.map_from_base);
-  }
-  return drawing.Map();
+  return DrawKept(frames, options.grid);
 }
 
 }  // namespace depthgrid

@@ -182,7 +182,6 @@ struct IncrementalMapper::State {
     std::optional<OccupancyMap> map;                    // drawn at these poses, if it was needed
   };
   FinalEstimate Final(const std::vector<std::optional<Pose3>>& slam_final) const;
-  std::vector<Pose2> MappedPoses() const;
   std::vector<MappedFrame> FramesOfMap() const;
   FinalEstimate FinalAsItIs() const;
   FinalEstimate FinalByAdjusting() const;

@@ -49,8 +49,7 @@ Adjustment PaperReference::Adjust(const std::vector<MappedFrame>& frames,
                                   const std::vector<PlanarLoop>& loops, AdjustEffort,
                                   std::span<const int>) {
   std::vector<ScanMeasurement> measurements = measurements_;
-  std::vector<Pose2> poses;
-  for (const MappedFrame& frame : frames) poses.push_back(frame.map_from_base);
+  const std::vector<Pose2> poses = PosesOf(frames);
   // A provisional last frame was not inserted; its measurement follows from its pose.
   while (measurements.size() < frames.size()) {
     measurements.push_back(

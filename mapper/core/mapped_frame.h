@@ -39,6 +39,29 @@ struct MappedFrame {
   bool of_prior_map() const { return frame < 0; }
 };
 
+// Sets a corrected pose. The match of a tied frame moves with it: an adjustment uses it as it lies
+// to the frame's pose.
+inline void MoveFrame(const Pose2& map_from_base, MappedFrame& frame) {
+  if (!frame.kept()) {
+    frame.match.map_from_base =
+        map_from_base * Between(frame.map_from_base, frame.match.map_from_base);
+  }
+  frame.map_from_base = map_from_base;
+}
+
+// Frames with corrected poses, one for each.
+inline std::vector<MappedFrame> WithPoses(std::vector<MappedFrame> frames,
+                                          const std::vector<Pose2>& map_from_base) {
+  for (std::size_t i = 0; i < frames.size(); ++i) MoveFrame(map_from_base[i], frames[i]);
+  return frames;
+}
+
+inline std::vector<Pose2> PosesOf(const std::vector<MappedFrame>& frames) {
+  std::vector<Pose2> map_from_base;
+  for (const MappedFrame& frame : frames) map_from_base.push_back(frame.map_from_base);
+  return map_from_base;
+}
+
 inline const MappedFrame& FrameAt(const std::vector<MappedFrame>& frames, int i) {
   return frames[static_cast<std::size_t>(i)];
 }

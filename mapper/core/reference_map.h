@@ -41,7 +41,12 @@ enum class AdjustEffort {
   kBend,        // during a long run: loops and motions only, no surfels
   kCloseLoops,  // during the run: loops may move poses far
   kFinish,      // at the end: every frame as accurately as possible
+  kFinishMoved  // the same, but from the given poses of the frames instead of those of the run
 };
+
+inline bool IsFinish(AdjustEffort effort) {
+  return effort == AdjustEffort::kFinish || effort == AdjustEffort::kFinishMoved;
+}
 
 // A part of the map that a scan was matched against.
 struct MapPart {

@@ -104,19 +104,6 @@ class SeenSoFar {
   SeenPlace place_;
 };
 
-// The other place's points in what this one saw.
-Overlap Compared(const SeenPlace& place, const SeenPlace& other, const Pose2& place_from_other) {
-  Overlap overlap;
-  for (const Eigen::Vector2d& point : other.points) {
-    const Cell cell = CellOf(place_from_other * point, place.geometry.resolution_m);
-    if (!place.geometry.Contains(cell)) continue;
-    const SeenPlace::Finding finding = place.findings[place.geometry.Index(cell)];
-    overlap.compared += finding == SeenPlace::kUnseen ? 0 : 1;
-    overlap.agreeing += finding == SeenPlace::kWall ? 1 : 0;
-  }
-  return overlap;
-}
-
 }  // namespace
 
 void OverlapOptions::Visit(OptionsVisitor& v) {
@@ -172,10 +159,27 @@ SeenInHalves SeenInHalvesFrom(const std::vector<MappedFrame>& frames,
   return {all.Place(), even.Place(), odd.Place()};
 }
 
+Overlap PointsIn(const SeenPlace& place, const std::vector<Eigen::Vector2d>& points,
+                 const Pose2& place_from_points) {
+  Overlap overlap;
+  for (const Eigen::Vector2d& point : points) {
+    const Cell cell = CellOf(place_from_points * point, place.geometry.resolution_m);
+    if (!place.geometry.Contains(cell)) continue;
+    const SeenPlace::Finding finding = place.findings[place.geometry.Index(cell)];
+    overlap.compared += finding == SeenPlace::kUnseen ? 0 : 1;
+    overlap.agreeing += finding == SeenPlace::kWall ? 1 : 0;
+  }
+  return overlap;
+}
+
+std::vector<Eigen::Vector2d> PointsSeenBy(const MappedFrame& frame, const OverlapOptions& options) {
+  return HitsOf(WithinSight(*frame.scan, options.resolution_m), Pose2{});
+}
+
 OverlapEachWay EachWay(const SeenPlace& first, const SeenPlace& second,
                        const Pose2& first_from_second) {
-  return {Compared(second, first, Inverse(first_from_second)),
-          Compared(first, second, first_from_second)};
+  return {PointsIn(second, first.points, Inverse(first_from_second)),
+          PointsIn(first, second.points, first_from_second)};
 }
 
 Overlap OverlapOf(const std::vector<MappedFrame>& frames, const PlanarLoop& loop,

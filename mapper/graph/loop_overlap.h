@@ -58,6 +58,9 @@ std::vector<int> FramesOfPlace(const std::vector<MappedFrame>& frames, int middl
                                const OverlapOptions& options, int end);
 SeenPlace SeenFrom(const std::vector<MappedFrame>& frames, const std::vector<int>& members,
                    int middle, const OverlapOptions& options);
+// Points in what a place's scans saw.
+Overlap PointsIn(const SeenPlace& place, const std::vector<Eigen::Vector2d>& points,
+                 const Pose2& place_from_points);
 OverlapEachWay EachWay(const SeenPlace& first, const SeenPlace& second,
                        const Pose2& first_from_second);
 inline Overlap OverlapOf(const SeenPlace& first, const SeenPlace& second,
@@ -72,6 +75,9 @@ struct SeenInHalves {
 SeenInHalves SeenInHalvesFrom(const std::vector<MappedFrame>& frames,
                               const std::vector<int>& members, int middle,
                               const OverlapOptions& options);
+
+// A frame's obstacles within the places' range limit, in its base axes.
+std::vector<Eigen::Vector2d> PointsSeenBy(const MappedFrame& frame, const OverlapOptions& options);
 
 // In both directions: points of the second place in the grid of the first and vice versa. Places
 // are drawn with the current poses, which are accurate over a second or two.

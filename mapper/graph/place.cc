@@ -46,6 +46,15 @@ Scan WithinSight(Scan scan, double resolution_m) {
   return scan;
 }
 
+std::vector<double> WaysTo(const std::vector<MappedFrame>& frames) {
+  std::vector<double> way_m(frames.size(), 0.0);
+  for (std::size_t i = 1; i < frames.size(); ++i) {
+    const Pose2 step = Between(frames[i - 1].map_from_base, frames[i].map_from_base);
+    way_m[i] = way_m[i - 1] + step.translation().norm();
+  }
+  return way_m;
+}
+
 std::vector<int> EvenlySpread(const std::vector<int>& positions, int most) {
   const int all = static_cast<int>(positions.size());
   if (all <= most) return positions;

@@ -33,6 +33,9 @@ inline const Pose2& PoseAt(const std::vector<MappedFrame>& frames, int i) {
   return FrameAt(frames, i).map_from_base;
 }
 
+// Path length to each frame.
+std::vector<double> WaysTo(const std::vector<MappedFrame>& frames);
+
 // At most `most` of the positions (2 or more), evenly spread, with the first and the last.
 std::vector<int> EvenlySpread(const std::vector<int>& positions, int most);
 

@@ -117,7 +117,7 @@ Adjustment AdjustScansAndSubmaps(const std::vector<MappedFrame>& frames,
                                  const GraphOptions& options) {
   Require(measurements.size() == frames.size(), "every frame has a measurement");
   Adjustment adjustment;
-  for (const MappedFrame& frame : frames) adjustment.map_from_base.push_back(frame.map_from_base);
+  adjustment.map_from_base = PosesOf(frames);
   adjustment.loop_accepted.assign(loops.size(), true);
   if (loops.empty()) return adjustment;
   const ScanSubmapGraph graph(frames, measurements, scans_per_submap, options);

@@ -165,7 +165,7 @@ GroupLimits LimitsFor(AdjustEffort effort, const JointOptions& joint,
   // Without surfels, cost is small and only loops and the chain of groups constrain: no need to
   // join.
   if (effort == AdjustEffort::kBend) return {.most = most, .most_of_prior_map = prior};
-  if (effort == AdjustEffort::kFinish) {
+  if (IsFinish(effort)) {
     return {.most = most,
             .most_of_prior_map = std::max(most / 2, most - (groups - prior)),
             .in_place = true};

@@ -222,12 +222,12 @@ Adjustment SurfelMap::Adjust(const std::vector<MappedFrame>& frames,
   }
   adjustment.motion_spread = SpreadOf(groups.groups(), motions, frames, result);
   adjustment.map_from_base =
-      effort == AdjustEffort::kFinish
+      IsFinish(effort)
           ? SmoothedOver(frames, groups, result.map_from_group, adjustment.motion_spread,
                          GrowthAt(motions, result.motion_growth, groups))
           : PosesOf(groups.places(), result.map_from_group);
   // More frames may follow: their matches are judged as before.
-  if (effort == AdjustEffort::kFinish) matcher_.ShareErrors(shared_before);
+  if (IsFinish(effort)) matcher_.ShareErrors(shared_before);
   const Pose2 shift = frames[0].map_from_base * Inverse(adjustment.map_from_base[0]);
   for (Pose2& pose : adjustment.map_from_base) pose = shift * pose;
   return adjustment;
@@ -252,6 +252,11 @@ SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustE
         LimitsFor(effort, options_.joint, starts), starts,
         effort == AdjustEffort::kBend ? GroupContent::kPosesOnly : GroupContent::kSurfels);
   };
+  if (effort == AdjustEffort::kFinishMoved) {
+    SurfelGroups moved = groups_;
+    moved.MoveTo(PosesOf(frames));
+    return joined(moved);
+  }
   if (groups_.places().size() >= frames.size()) return joined(groups_);
   // A provisional last frame was not inserted yet.
   SurfelGroups groups = groups_;
@@ -311,9 +316,7 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
 }
 
 void SurfelMap::Rebuild(const std::vector<MappedFrame>& frames) {
-  std::vector<Pose2> map_from_base;
-  for (const MappedFrame& frame : frames) map_from_base.push_back(frame.map_from_base);
-  groups_.MoveTo(map_from_base);
+  groups_.MoveTo(PosesOf(frames));
   map_.Clear();
   std::size_t frame = 0;
   int before = 0;
