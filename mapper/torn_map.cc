@@ -24,7 +24,7 @@ constexpr double kMostUnsureM = 1.0;
 // Of each part, what lies within this distance of the tear, seen from so many frames at most.
 constexpr double kPartReachM = 15.0;
 constexpr int kMostPartViews = 100;
-// TornParts of which less agrees contradict each other.
+// Parts of which less agrees contradict each other.
 constexpr double kTornAgreement = 0.9;
 // Tears that are examined, those with most way on which nothing told the position, and of these
 // those that are searched, across which most is contradicted.
@@ -196,28 +196,36 @@ std::vector<Pose2> MovedFrom(const std::vector<MappedFrame>& frames, int first, 
   return moved;
 }
 
-std::optional<Mending> MendingAt(const std::vector<MappedFrame>& frames, const TornParts& parts,
-                                 const PlaceMatcher& matcher, const OverlapOptions& overlap) {
-  const Pose2& before = PoseAt(frames, parts.tear.last);
-  const Pose2& after = PoseAt(frames, parts.tear.first);
-  const auto found = SearchPart(parts.first, parts.second, Between(before, after));
-  if (!found) return std::nullopt;
-  const Pose2 shift = before * *found * Inverse(after);
-  const std::vector<Witness> witnesses = WitnessesOf(
-      frames, parts.new_views, parts.first, Inverse(before), Inverse(before) * shift, overlap);
-  std::vector<int> old_ones, members;
-  for (const Witness& old : WitnessesOf(frames, parts.old_views, parts.second, Inverse(after),
-                                        Inverse(after) * Inverse(shift), overlap)) {
-    old_ones.push_back(old.view);
-  }
-  for (const Witness& witness : witnesses) members.push_back(witness.view);
-  if (old_ones.empty() || members.empty()) return std::nullopt;
-  std::sort(old_ones.begin(), old_ones.end());
-  std::sort(members.begin(), members.end());
-  const std::vector<int> near = SeenFromNear(frames, old_ones, members, shift);
-  Mending mending;
-  PlanarLoop& loop = mending.loop;
-  loop.second = witnesses.front().view;
+std::vector<int> InOrderOfTime(const std::vector<Witness>& witnesses) {
+  std::vector<int> views;
+  for (const Witness& witness : witnesses) views.push_back(witness.view);
+  std::sort(views.begin(), views.end());
+  return views;
+}
+
+// The last frame before `end` that a prior map has; -1: none.
+int LastOfPrior(const std::vector<MappedFrame>& frames, int end) {
+  int i = end - 1;
+  while (i >= 0 && !FrameAt(frames, i).of_prior_map()) --i;
+  return i;
+}
+
+// With the later part moved by `shift` (map axes), or by what a precise match makes of it.
+std::optional<Mending> MendingBy(const std::vector<MappedFrame>& frames, const TornParts& parts,
+                                 const Pose2& shift, const PlaceMatcher& matcher,
+                                 const OverlapOptions& overlap) {
+  const Pose2 first_from_map = Inverse(PoseAt(frames, parts.tear.last));
+  const Pose2 second_from_map = Inverse(PoseAt(frames, parts.tear.first));
+  const std::vector<Witness> new_ones = WitnessesOf(
+      frames, parts.new_views, parts.first, first_from_map, first_from_map * shift, overlap);
+  const std::vector<Witness> old_ones =
+      WitnessesOf(frames, parts.old_views, parts.second, second_from_map,
+                  second_from_map * Inverse(shift), overlap);
+  if (old_ones.empty() || new_ones.empty()) return std::nullopt;
+  const std::vector<int> members = InOrderOfTime(new_ones);
+  const std::vector<int> near = SeenFromNear(frames, InOrderOfTime(old_ones), members, shift);
+  PlanarLoop loop;
+  loop.second = new_ones.front().view;
   const Pose2 there = shift * PoseAt(frames, loop.second);
   loop.first = *std::min_element(near.begin(), near.end(), [&](int a, int b) {
     return Separation(PoseAt(frames, a), there) < Separation(PoseAt(frames, b), there);
@@ -225,17 +233,27 @@ std::optional<Mending> MendingAt(const std::vector<MappedFrame>& frames, const T
   loop.first_from_second = Between(PoseAt(frames, loop.first), there);
   loop.sigma_translation_m = kRoughM;
   loop.sigma_yaw_rad = kRoughRad;
-  const Overlap there_now = OverlapOf(frames, near, members, loop, overlap);
-  const auto precise = matcher.Confirmed(frames, near, members, loop, kPreciseAgreement);
-  if (precise) {
+  if (const auto precise = matcher.Confirmed(frames, near, members, loop, kPreciseAgreement)) {
     loop = *precise;
-  } else if (there_now.compared < overlap.min_points || there_now.agreement() < kRoughAgreement) {
-    return std::nullopt;
+  } else {
+    const Overlap rough = OverlapOf(frames, near, members, loop, overlap);
+    if (rough.compared < overlap.min_points || rough.agreement() < kRoughAgreement) return {};
   }
   const Pose2 moved = PoseAt(frames, loop.first) * loop.first_from_second;
-  mending.map_from_base =
-      MovedFrom(frames, near.back(), members.front(), moved * Inverse(PoseAt(frames, loop.second)));
-  return mending;
+  const int from = std::max(near.back(), LastOfPrior(frames, parts.tear.first));
+  return Mending{
+      loop, MovedFrom(frames, from, members.front(), moved * Inverse(PoseAt(frames, loop.second)))};
+}
+
+std::optional<Mending> MendingAt(const std::vector<MappedFrame>& frames, const Tear& tear,
+                                 const PlaceMatcher& matcher, const OverlapOptions& overlap) {
+  const std::optional<TornParts> parts = TornPartsAt(frames, tear, overlap);
+  if (!parts) return std::nullopt;
+  const Pose2& before = PoseAt(frames, tear.last);
+  const Pose2& after = PoseAt(frames, tear.first);
+  const auto found = SearchPart(parts->first, parts->second, Between(before, after));
+  if (!found) return std::nullopt;
+  return MendingBy(frames, *parts, before * *found * Inverse(after), matcher, overlap);
 }
 
 }  // namespace
@@ -246,8 +264,7 @@ std::vector<Mending> MendingsOf(const std::vector<MappedFrame>& frames,
   const PlaceMatcher matcher(search, overlap);
   std::vector<Mending> mendings;
   for (const Tear& tear : WorstTears(frames, overlap, guessed)) {
-    const std::optional<TornParts> parts = TornPartsAt(frames, tear, overlap);
-    std::optional<Mending> mending = MendingAt(frames, *parts, matcher, overlap);
+    std::optional<Mending> mending = MendingAt(frames, tear, matcher, overlap);
     if (mending) mendings.push_back(std::move(*mending));
   }
   return mendings;

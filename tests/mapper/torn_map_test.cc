@@ -106,6 +106,18 @@ TEST(TornMap, OfAPriorMapIsLeftAsItIs) {
   std::vector<MappedFrame> torn = Torn(TornRoom(), {0.8, -0.5, 0.0});
   for (MappedFrame& frame : torn) frame.frame -= kTornFrames;
   EXPECT_TRUE(Mendings(torn).empty());
+  // What was mapped since moves alone, even if the prior map ends with frames that tell nothing.
+  for (int i = 0; i < kTornFrames; ++i) {
+    MappedFrame& frame = torn[static_cast<std::size_t>(i)];
+    frame.frame = i < kTornAt ? i - kTornAt : i;
+    if (i >= kTornAt - 10 && i < kTornAt) frame.match.found = false;
+  }
+  const std::vector<Mending> mendings = Mendings(torn);
+  ASSERT_FALSE(mendings.empty());
+  for (int i = 0; i < kTornAt; ++i) {
+    const Pose2& moved = mendings.front().map_from_base[static_cast<std::size_t>(i)];
+    EXPECT_FALSE(AreApart(moved, PoseAt(torn, i), 1e-9, 1e-9)) << i;
+  }
 }
 
 // Between bare walls all places along them fit.
