@@ -1,6 +1,7 @@
 #include "mapper/io/camera_formats.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
@@ -15,6 +16,7 @@
 #include "mapper/io/damage.h"
 #include "mapper/io/file.h"
 #include "mapper/io/number_rows.h"
+#include "mapper/io/realsense_listing.h"
 
 namespace depthgrid {
 namespace {
@@ -138,6 +140,7 @@ CameraDescription ParseCamera(const std::string& text, const std::string& place)
       text.find("Camera1.fx:") != std::string::npos) {
     return FromOrbSlam(text, place);
   }
+  if (IsRealSenseListing(text)) return ParseRealSenseListing(text, place);
   const Config config = ConfigOfOthers(text, place);
   auto camera = CameraByKeys(config);
   if (!camera) return FromOwn(config, text, place);
@@ -155,7 +158,8 @@ CameraDescription ParseCameraDescription(const std::string& text, const std::str
     pinhole.fy_px = -pinhole.fy_px;
   }
   PinholeCamera checked = pinhole;
-  if (!camera.has_size) {  // checked again with the first image's size
+  if (!camera.sizes.empty()) return camera;  // checked one by one
+  if (!camera.has_size) {                    // checked again with the first image's size
     checked.width_px = checked.height_px = kMostImageSidePx;
   }
   Validate(checked, place);
@@ -182,6 +186,28 @@ CameraDescription ReadCameraDescription(const std::string& path,
   if (!text.ends_with('}')) WarnOfCut(path, text, warnings);
   if (!camera.taken.empty()) warnings.push_back(path + ": " + camera.taken);
   return camera;
+}
+
+void TakeSize(int width_px, int height_px, const std::string& image_path,
+              CameraDescription& camera) {
+  PinholeCamera& pinhole = camera.file.camera;
+  if (camera.sizes.empty()) {
+    pinhole.width_px = width_px;
+    pinhole.height_px = height_px;
+    Validate(pinhole, "camera of " + image_path);
+    return;
+  }
+  std::vector<std::string> listed;
+  for (const PinholeCamera& one : camera.sizes) {
+    listed.push_back(fmt::format("{}x{}", one.width_px, one.height_px));
+    if (one.width_px != width_px || one.height_px != height_px) continue;
+    pinhole = one;
+    return;
+  }
+  throw InputError(
+      camera.path,
+      fmt::format("lists the depth stream at {}, must list it at {}x{}, the size of {}",
+                  fmt::join(listed, ", "), width_px, height_px, image_path));
 }
 
 std::string NoDepthScale(const std::string& path, double scale_per_m) {

@@ -19,18 +19,23 @@ struct CameraDescription {
   // fy is given negative (ICL-NUIM): the camera's y axis points up. `file` holds it positive, and
   // poses are to be turned by FlipY.
   bool y_up = false;
+  // One for each size of image, of which the first image's is to be taken (`file` is empty).
+  std::vector<PinholeCamera> sizes = {};
   std::string path = {};       // of the file, if it was read from one
   std::string mount_key = {};  // where it states the camera's place on a body, if it does
   std::string taken = {};      // what was taken for granted; empty if nothing was
 };
 
-// Our camera.yaml, those of camera_keys.h, ORB-SLAM2/3 settings, or a text with fx fy cx cy or with
-// a 3x3, 3x4 or 4x4 matrix. Throws InputError.
+// Our camera.yaml, those of camera_keys.h and realsense_listing.h, ORB-SLAM2/3 settings, or a text
+// with fx fy cx cy or with a 3x3, 3x4 or 4x4 matrix. Throws InputError.
 CameraDescription ReadCameraDescription(const std::string& path);
 // Adds possible faults of the file to `warnings`.
 CameraDescription ReadCameraDescription(const std::string& path,
                                         std::vector<std::string>& warnings);
 CameraDescription ParseCameraDescription(const std::string& text, const std::string& place);
+// Gives a camera without size that of `image_path`. Throws InputError if none of its sizes is this.
+void TakeSize(int width_px, int height_px, const std::string& image_path,
+              CameraDescription& camera);
 // The warning that a camera file has no depth_scale, with the scale used.
 std::string NoDepthScale(const std::string& path, double scale_per_m);
 

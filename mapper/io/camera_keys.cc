@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +10,7 @@
 #include "mapper/core/counted.h"
 #include "mapper/core/error.h"
 #include "mapper/io/camera_values.h"
+#include "mapper/io/realsense_listing.h"
 
 namespace depthgrid {
 namespace {
@@ -81,31 +81,6 @@ CameraDescription FromOpen3d(const Config& config, const std::string& group) {
   return camera;
 }
 
-// librealsense's rs2_distortion by its names in Python and in C++, or by number. The coefficients
-// of the inverse and the modified model mean something else than those of plumb_bob.
-void RequireRealSenseModel(const Config& config, bool distorts) {
-  constexpr const char* kPlumbBob[] = {"brown_conrady", "Brown Conrady", "4"};
-  constexpr const char* kPinholes[] = {"none",
-                                       "None",
-                                       "0",
-                                       "modified_brown_conrady",
-                                       "Modified Brown Conrady",
-                                       "1",
-                                       "inverse_brown_conrady",
-                                       "Inverse Brown Conrady",
-                                       "2"};
-  std::string model = config.Text("model", "none");
-  if (model.starts_with("distortion.")) model.erase(0, std::string("distortion.").size());
-  const auto is_one_of = [&](const auto& names) {
-    return std::find(std::begin(names), std::end(names), model) != std::end(names);
-  };
-  const bool is_pinhole = is_one_of(kPinholes);
-  if (is_one_of(kPlumbBob) || (is_pinhole && !distorts)) return;
-  throw InputError(config.PlaceOfKey("model"),
-                   fmt::format("model is {}, must be brown_conrady{}", model,
-                               is_pinhole ? ", or all coeffs 0" : ""));
-}
-
 // A stream's rs2_intrinsics, as scripts write them.
 CameraDescription FromRealSense(const Config& config) {
   CameraDescription camera;
@@ -120,7 +95,8 @@ CameraDescription FromRealSense(const Config& config) {
     SetDistortion(CountedNumbersAt(config, "coeffs", {5, 5}, "the five k1 k2 p1 p2 k3"),
                   config.PlaceOfKey("coeffs"), pinhole);
   }
-  RequireRealSenseModel(config, pinhole.HasDistortion());
+  RequireRealSenseModel(config.Text("model", "none"), pinhole.HasDistortion(), "model",
+                        config.PlaceOfKey("model"));
   camera.has_depth_scale = config.Has("depth_scale");
   if (camera.has_depth_scale) {
     // librealsense gives metres a unit.

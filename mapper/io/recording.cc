@@ -300,14 +300,15 @@ DepthReader PngDepthReader(const DepthPngFormat& format) {
 void CompleteSize(const Recording& recording, CameraDescription& camera) {
   if (camera.has_size) return;
   for (const RecordedImage& image : ImagesOfPart(recording)) {
+    int width_px = 0, height_px = 0;
     try {
       const DepthImage depth = ReadDepthPng(image.depth_path);
-      camera.file.camera.width_px = depth.width_px;
-      camera.file.camera.height_px = depth.height_px;
+      width_px = depth.width_px;
+      height_px = depth.height_px;
     } catch (const InputError&) {
       continue;  // OpenRecording reports the error if none can be read
     }
-    Validate(camera.file.camera, "camera of " + image.depth_path);
+    TakeSize(width_px, height_px, image.depth_path, camera);
     return;
   }
 }

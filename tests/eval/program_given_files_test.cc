@@ -93,8 +93,17 @@ TEST_F(ProgramGivenFiles, CamerasOfOtherPrograms) {
                                  c.width_px, c.height_px));
   Write("matrix.txt", fmt::format("{} 0 {} 0\n0 {} {} 0\n0 0 1 0\n0 0 0 1\n", c.fx_px, c.cx_px,
                                   c.fy_px, c.cy_px));
-  for (const char* file :
-       {"open3d.json", "realsense.json", "kalibr.yaml", "numbers.txt", "sized.txt", "matrix.txt"}) {
+  std::string listing = "Intrinsic Parameters:\n\n";
+  for (const int times : {2, 1}) {
+    listing += fmt::format(
+        " Intrinsic of \"Depth\" / {0}x{1} / {{Z16}}\n  Width: \t{0}\n  Height: \t{1}\n  PPX: "
+        "\t{2}\n  PPY: \t{3}\n  Fx: \t{4}\n  Fy: \t{5}\n  Distortion: \tBrown Conrady\n  "
+        "Coeffs: \t0  \t0  \t0  \t0  \t0  \n  FOV (deg): \t67 x 53\n\n",
+        times * c.width_px, times * c.height_px, c.cx_px, c.cy_px, c.fx_px, c.fy_px);
+  }
+  Write("listing.txt", listing);
+  for (const char* file : {"open3d.json", "realsense.json", "kalibr.yaml", "numbers.txt",
+                           "sized.txt", "matrix.txt", "listing.txt"}) {
     EXPECT_EQ(Mapped(std::string("seq --camera ") + file).first, own) << file;
   }
 }
