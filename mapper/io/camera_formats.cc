@@ -135,6 +135,7 @@ CameraDescription FromNumbers(const std::string& text, const std::string& place)
 
 CameraDescription ParseCamera(const std::string& text, const std::string& place) {
   if (text.empty()) throw InputError(place, "is empty, must describe a camera");
+  for (const TextRow& row : SplitRows(text)) RequireText(row, place);
   if (BeginsWithNumber(text)) return FromNumbers(text, place);
   if (text.find("Camera.fx:") != std::string::npos ||
       text.find("Camera1.fx:") != std::string::npos) {

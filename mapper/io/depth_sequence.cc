@@ -81,9 +81,10 @@ DepthSequence IclSequence(const std::string& path, const SequenceOptions& option
   sequence.recording = ListIclFolder(path);
   sequence.recording.part = FindPart(options.part, sequence.recording);
   sequence.slam = slam ? *slam : ReadIclPoses(path, sequence.recording);
-  const CameraDescription camera =
+  CameraDescription camera =
       options.camera.empty() ? IclCamera(path, sequence.recording.warnings)
                              : ReadCameraDescription(options.camera, sequence.recording.warnings);
+  CompleteSize(sequence.recording, camera);
   TakeCamera(camera, options, sequence);
   sequence.usual_up = camera.y_up ? WorldUp::kMinusY : WorldUp::kY;
   sequence.reader = IclDepthReader(sequence.recording, options.recording);

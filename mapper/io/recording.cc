@@ -311,6 +311,10 @@ void CompleteSize(const Recording& recording, CameraDescription& camera) {
     TakeSize(width_px, height_px, image.depth_path, camera);
     return;
   }
+  if (camera.sizes.empty()) return;
+  throw InputError(camera.path, fmt::format("lists the depth stream at {} sizes, must list it at "
+                                            "one: {} has no readable PNG image that tells which",
+                                            camera.sizes.size(), recording.name));
 }
 
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options) {

@@ -52,7 +52,8 @@ DepthReader PngDepthReader(const DepthPngFormat& format);
 // The depth format of a recording's PNG images.
 DepthPngFormat DepthFormatOf(const CameraFile& camera, const RecordingOptions& options);
 
-// Sets an unknown image size to that of the part's first readable PNG.
+// Sets an unknown image size to that of the part's first readable PNG. Throws InputError if the
+// camera has several sizes and none of them is this.
 void CompleteSize(const Recording& recording, CameraDescription& camera);
 
 // Frames of the recording's part in its order, without the camera's distortion, numbered as in the

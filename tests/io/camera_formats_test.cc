@@ -22,6 +22,14 @@ TEST(CameraFormats, OurYamlWithEitherSignOfFy) {
   EXPECT_EQ(up.file, down.file);
 }
 
+// As a Windows shell redirects it.
+TEST(CameraFormats, TextOfTwoBytesACharacterIsRefused) {
+  std::string wide = "\xFF\xFE";
+  for (const char c : std::string("525 525 320 240\n")) wide += {c, '\0'};
+  EXPECT_EQ(DescriptionRefusal(wide),
+            "c:1: holds bytes that are zero (UTF-16?), must be UTF-8 text");
+}
+
 TEST(CameraFormats, RosCalibrationAndPrintedMessage) {
   const CameraDescription calibration = ParseCameraDescription(
       "image_width: 640\nimage_height: 480\ncamera_name: rgb\ncamera_matrix:\n  rows: 3\n  cols: "

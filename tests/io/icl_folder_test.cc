@@ -150,6 +150,28 @@ TEST_F(IclFolderTest, AsASequenceItIsLevelWithTheFloorBelow) {
   }
 }
 
+TEST_F(IclFolderTest, OfACameraOfSeveralSizesThatOfTheImagesIsTaken) {
+  std::string listing;
+  for (const int times : {2, 1}) {
+    listing += fmt::format(
+        "Intrinsic of \"Depth\" / {0}x{1} / {{Z16}}\nWidth: {0}\nHeight: {1}\nPPX: 7\nPPY: 6\n"
+        "Fx: 30\nFy: 31\nDistortion: None\nCoeffs: 0 0 0 0 0\n\n",
+        times * kWidth, times * kHeight);
+  }
+  Write("listing.txt", listing);
+  Write("a.gt.freiburg", Freiburg(1, kFirst, 0.0));
+  SequenceOptions options;
+  options.camera = Path("listing.txt");
+  WriteRays(1, kFirst, 0.0, 1.0);
+  const auto error = [&] { return Short(RefusalOf([&] { OpenSequence(folder_, options); })); };
+  EXPECT_EQ(error(),
+            "~/listing.txt: lists the depth stream at 2 sizes, must list it at one: ~ has no "
+            "readable PNG image that tells which");
+  WritePng(1, kFirst, 0.0);
+  const PinholeCamera camera = *OpenSequence(folder_, options).source->Camera();
+  EXPECT_EQ(camera, (PinholeCamera{kWidth, kHeight, 30.0, 31.0, 7.0, 6.0, {}}));
+}
+
 // The counter-example: the same folder read with the other sign of fy does not fall together.
 TEST_F(IclFolderTest, TheWrongSignOfFyIsVisiblyWrong) {
   WriteCamera(kF);
