@@ -22,6 +22,16 @@ struct GuessedFrames {
   std::optional<int> last;
 };
 
+// A part over which the map goes another way than SLAM, far more so than elsewhere, and nothing
+// that was seen tells which is right: SLAM slipped there, or something that moved along was taken
+// for walls and led the map astray.
+struct AstrayFrames {
+  int first = 0;         // Frame::index of the last frame before it
+  int last = 0;          // and of its last one
+  double apart_m = 0.0;  // how far the two ways are apart, summed over steps of half a metre
+  double usual_m = 0.0;  // of as many other steps, by the median
+};
+
 struct MapperResult {
   // The final estimate of each frame that AddFrame() accepted, in that order (refused frames have
   // no entry); empty where neither SLAM nor the map gave a pose.
@@ -31,6 +41,7 @@ struct MapperResult {
   std::vector<PlanarLoop> loops;  // those that the final adjustment accepted
   // What was mapped after a loss of SLAM and neither the search nor a loop placed.
   std::vector<GuessedFrames> guessed;
+  std::vector<AstrayFrames> astray;
   OccupancyMap map;
 };
 

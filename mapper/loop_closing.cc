@@ -24,6 +24,9 @@ void LoopOptions::Visit(OptionsVisitor& v) {
   v.Group("search", search, "loops that the mapper finds itself");
   v.Flag("join_doubled", join_doubled,
          "whether what the finished map shows twice is joined, where search.use is on");
+  v.Number("astray_ratio", astray_ratio, {0.0, 1e6},
+           "where the finished map leaves SLAM's path by this many times as much as usual and "
+           "nothing seen contradicts SLAM, SLAM is followed; 0: nowhere");
   v.Group("slide", slide, "where the estimate is after a stretch that told little of it");
   v.Group("relocation", relocation, "where the camera is after SLAM was lost for seconds");
 }

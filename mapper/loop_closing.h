@@ -26,6 +26,10 @@ struct LoopOptions {
   // Whether what the finished map shows twice is joined (map_joining.h); only where loops are
   // searched for.
   bool join_doubled = true;
+  // At the end SLAM is followed where the map leaves its path by this many times as much as usual
+  // and nothing that was seen contradicts SLAM (astray_mending.h); 0: never. Only where loops are
+  // searched for and with surfels.
+  double astray_ratio = 8.0;
   SlideSearchOptions slide;
   RelocationOptions relocation;
 

@@ -1,6 +1,7 @@
 // The end of a run: final adjustment and drawing of the map.
 #include <utility>
 
+#include "mapper/astray_mending.h"
 #include "mapper/core/level.h"
 #include "mapper/finished_map.h"
 #include "mapper/frame_check.h"
@@ -25,6 +26,9 @@ MapperResult IncrementalMapper::Finish(const std::vector<std::optional<Pose3>>& 
     const bool ends = part.end < static_cast<int>(mapped_frames.size());
     result.guessed.push_back(
         {frame(part.first), ends ? std::optional(frame(part.end - 1)) : std::nullopt});
+  }
+  for (const AstrayPart& part : final.astray) {
+    result.astray.push_back({frame(part.first), frame(part.last), part.apart_m, part.usual_m});
   }
   const GridOptions& grid = state_->options.grid;
   result.map = final.map && !IsSharpened(result.mapped, grid) ? std::move(*final.map)
@@ -63,7 +67,7 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalByAdjusti
   FinalEstimate final;
   final.loops = Held(loop_closer.loops(), adjustment);
   final.map_from_base = std::move(adjustment.map_from_base);
-  JoinDoubledWalls(final);
+  PutRight(final);
   final.guessed = relocation.GuessedParts(mapped.size());
   std::erase_if(final.guessed,
                 [&](const GuessedPart& part) { return IsLeftByAny(part, final.loops); });
@@ -72,20 +76,27 @@ IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalByAdjusti
   return final;
 }
 
-void IncrementalMapper::State::JoinDoubledWalls(FinalEstimate& final) const {
-  if (!options.loops.join_doubled || !options.loops.use || !loop_search) return;
+void IncrementalMapper::State::PutRight(FinalEstimate& final) const {
+  const bool mends = options.loops.astray_ratio > 0.0 && options.method == MapperMethod::kSurfel;
+  const bool joins = options.loops.join_doubled;
+  if (!options.loops.use || !loop_search || !(mends || joins)) return;
   const MapJoining joining(options.loops, options.grid, *reference,
                            relocation.GuessedParts(mapped.size()));
   JoinedMap map =
       joining.Examined(WithPoses(mapped.all(), final.map_from_base), loop_closer.loops());
-  std::optional<JoinedMap> joined = joining.Joined(map);
-  if (!joined) {
-    final.map = std::move(map.map);
-    return;
+  if (mends) {
+    AstrayMending mending(options.loops, joining, *reference);
+    map = mending.Mended(std::move(map));
+    final.astray = mending.undecided();
   }
-  final.loops = Held(joined->loops, *joined->adjustment);
-  final.map_from_base = std::move(joined->adjustment->map_from_base);
-  final.map = std::move(joined->map);
+  if (joins) {
+    if (std::optional<JoinedMap> joined = joining.Joined(map)) map = std::move(*joined);
+  }
+  if (map.adjustment) {
+    final.loops = Held(map.loops, *map.adjustment);
+    final.map_from_base = std::move(map.adjustment->map_from_base);
+  }
+  final.map = std::move(map.map);
 }
 
 IncrementalMapper::State::FinalEstimate IncrementalMapper::State::FinalOfSlam(

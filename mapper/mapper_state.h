@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "mapper/adjustment_rounds.h"
+#include "mapper/astray_parts.h"
 #include "mapper/beginning.h"
 #include "mapper/frame_history.h"
 #include "mapper/fuse/correction_filter.h"
@@ -179,14 +180,15 @@ struct IncrementalMapper::State {
     std::vector<std::optional<Pose3>> map_from_camera;  // of all frames
     std::vector<PlanarLoop> loops;                      // accepted, among the kept frames
     std::vector<GuessedPart> guessed;                   // joined to the rest by no loop
-    std::optional<OccupancyMap> map;                    // drawn at these poses, if it was needed
+    std::vector<AstrayPart> astray;
+    std::optional<OccupancyMap> map;  // drawn at these poses, if it was needed
   };
   FinalEstimate Final(const std::vector<std::optional<Pose3>>& slam_final) const;
   std::vector<MappedFrame> FramesOfMap() const;
   FinalEstimate FinalAsItIs() const;
   FinalEstimate FinalByAdjusting() const;
-  // Joins what the map of these poses shows twice, if anything.
-  void JoinDoubledWalls(FinalEstimate& final) const;
+  // Follows SLAM where the map was led astray, and joins what it shows twice, if anything.
+  void PutRight(FinalEstimate& final) const;
   FinalEstimate FinalOfSlam(const std::vector<std::optional<Pose3>>& slam_final) const;
   OccupancyMap Draw(const std::vector<MappedFrame>& frames) const;
 };

@@ -148,6 +148,18 @@ std::vector<std::string> GuessWarnings(const std::vector<GuessedFrames>& guessed
   return lines;
 }
 
+std::vector<std::string> AstrayWarnings(const std::vector<AstrayFrames>& astray) {
+  std::vector<std::string> lines;
+  for (const AstrayFrames& part : astray) {
+    lines.push_back(fmt::format(
+        "poses: from frame {} to {} the map's way is {:.2f} m apart from SLAM's, {:.0f} "
+        "times as much as usual, and nothing seen tells which is right: SLAM slipped, "
+        "or something that moved along was taken for walls",
+        part.first, part.last, part.apart_m, part.apart_m / part.usual_m));
+  }
+  return lines;
+}
+
 std::vector<std::string> FrameRecorder::Warnings() const {
   std::vector<std::string> lines = MendedPoses(run_.reports);
   if (const auto cut = saturation_.Found(); cut && cut->z_m < scan_.max_range_m) {
@@ -158,6 +170,7 @@ std::vector<std::string> FrameRecorder::Warnings() const {
                     Counted(cut->frames, "frame"), cut->z_m, 0.99 * cut->z_m));
   }
   for (std::string& line : GuessWarnings(run_.result.guessed)) lines.push_back(std::move(line));
+  for (std::string& line : AstrayWarnings(run_.result.astray)) lines.push_back(std::move(line));
   return lines;
 }
 

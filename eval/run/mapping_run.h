@@ -75,6 +75,9 @@ std::vector<std::string> MendedPoses(const std::vector<FrameReport>& reports);
 // The parts whose place in the map remained a guess, one line each.
 std::vector<std::string> GuessWarnings(const std::vector<GuessedFrames>& guessed);
 
+// The parts in which nothing tells whether the map or SLAM is right, one line each.
+std::vector<std::string> AstrayWarnings(const std::vector<AstrayFrames>& astray);
+
 // What a sequence is mapped with besides its frames.
 struct MappingInputs {
   Trajectory final_poses = {};  // SLAM's own final trajectory, empty if there is none

@@ -33,6 +33,9 @@ struct MappedFrame {
   double gap_share = 1.0;
   // SLAM's pose did not move since the previous frame (Standing).
   bool stands = false;
+  // Its scan told a wrong pose, as something moved along: at the end its pose is SLAM's motion from
+  // the frame before.
+  bool led_astray = false;
   MatchResult match;  // its information in axes of the matched pose
 
   bool kept() const { return tied_to < 0; }

@@ -223,4 +223,10 @@ void SurfelGroups::MoveTo(const std::vector<Pose2>& map_from_base) {
   }
 }
 
+void SurfelGroups::LeaveOutAstray(const std::vector<MappedFrame>& frames) {
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    if (frames[i].led_astray) groups_[static_cast<std::size_t>(places_[i].group)].surfels.clear();
+  }
+}
+
 }  // namespace depthgrid

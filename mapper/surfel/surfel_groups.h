@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "mapper/core/mapped_frame.h"
 #include "mapper/core/options.h"
 #include "mapper/surfel/surfel_store.h"
 
@@ -72,6 +73,8 @@ class SurfelGroups {
   const std::vector<GroupPlace>& places() const { return places_; }  // one per frame
   // Sets corrected poses, one per frame. The groups' surfels do not change.
   void MoveTo(const std::vector<Pose2>& map_from_base);
+  // Drops the surfels of groups with frames that were led astray.
+  void LeaveOutAstray(const std::vector<MappedFrame>& frames);
   // The same frames in fewer groups, within the limits as far as possible: joins consecutive
   // groups, and settled ones, such as a prior map's, with others of the same place.
   SurfelGroups Joined(const GroupLimits& limits, const std::vector<GroupStart>& starts,

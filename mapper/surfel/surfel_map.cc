@@ -255,6 +255,7 @@ SurfelGroups SurfelMap::GroupsOf(const std::vector<MappedFrame>& frames, AdjustE
   if (effort == AdjustEffort::kFinishMoved) {
     SurfelGroups moved = groups_;
     moved.MoveTo(PosesOf(frames));
+    moved.LeaveOutAstray(frames);
     return joined(moved);
   }
   if (groups_.places().size() >= frames.size()) return joined(groups_);
@@ -295,7 +296,9 @@ std::vector<Pose2> SurfelMap::SmoothedOver(const std::vector<MappedFrame>& frame
   const int first_new = FirstNew(frames);
   for (auto i = static_cast<std::size_t>(first_new); i < frames.size(); ++i) {
     MatchResult match = frames[i].match;
-    if (frames[i].kept()) {
+    if (frames[i].led_astray) {
+      match = {};
+    } else if (frames[i].kept()) {
       const std::vector<Surfel> pieces = maker_.Make(*frames[i].scan, noise_);
       match = matcher_.Match(pieces, map, {poses[i], covariance});
     } else {
