@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "mapper/core/angle.h"
+#include "mapper/core/median.h"
 #include "mapper/graph/place.h"
 
 namespace depthgrid {
@@ -12,7 +14,6 @@ namespace {
 // A step ends with this way or turn, SLAM's or the map's: poses jitter from frame to frame.
 constexpr double kStepM = 0.5;
 constexpr double kStepRad = 0.5;
-constexpr double kMetresPerRad = 3.0;
 // Fewer do not tell what is usual, and where SLAM is nearly perfect, this is.
 constexpr std::size_t kFewestSteps = 12;
 constexpr double kLeastUsualM = 0.005;
@@ -44,7 +45,7 @@ class GrowingStep {
     const Eigen::Vector2d map =
         Between(PoseAt(frames, step_.first), PoseAt(frames, i)).translation();
     step_.apart_m =
-        std::hypot((map - slam).norm(), kMetresPerRad * (map_turn_rad_ - slam_turn_rad_));
+        std::hypot((map - slam).norm(), (map_turn_rad_ - slam_turn_rad_) / kMotionUnit.z());
     const double turn_rad = std::max(std::abs(slam_turn_rad_), std::abs(map_turn_rad_));
     return std::max(slam.norm(), map.norm()) >= kStepM || turn_rad >= kStepRad;
   }
@@ -73,9 +74,7 @@ std::vector<Step> StepsOf(const std::vector<MappedFrame>& frames) {
 double MedianApartM(const std::vector<Step>& steps) {
   std::vector<double> apart_m;
   for (const Step& step : steps) apart_m.push_back(step.apart_m);
-  const auto middle = apart_m.begin() + static_cast<std::ptrdiff_t>(apart_m.size() / 2);
-  std::nth_element(apart_m.begin(), middle, apart_m.end());
-  return *middle;
+  return UpperMedian(std::move(apart_m));
 }
 
 }  // namespace

@@ -8,13 +8,14 @@
 
 namespace depthgrid {
 
-// Consecutive frames over which the poses go another way than SLAM's.
+// Consecutive frames over which the poses go another way than SLAM's; indices into the vector of
+// MappedFrame.
 struct AstrayPart {
   int first = 0;         // the last frame before it
   int last = 0;          // its last frame
   double apart_m = 0.0;  // how far the two ways are apart, summed over steps of half a metre; a
                          // turn counts as what it moves 3 m away
-  double usual_m = 0.0;  // of as many other steps
+  double usual_m = 0.0;  // of as many steps, by the median
 
   bool Overlaps(const AstrayPart& other) const { return first < other.last && other.first < last; }
 };

@@ -29,7 +29,7 @@ struct AstrayFrames {
   int first = 0;         // Frame::index of the last frame before it
   int last = 0;          // and of its last one
   double apart_m = 0.0;  // how far the two ways are apart, summed over steps of half a metre
-  double usual_m = 0.0;  // of as many other steps, by the median
+  double usual_m = 0.0;  // of as many steps, by the median
 };
 
 struct MapperResult {

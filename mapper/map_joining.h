@@ -20,7 +20,7 @@ struct JoinedMap {
   OccupancyMap map;
   std::vector<CrossedWalls> crossed;     // sampled
   std::optional<Adjustment> adjustment;  // that led to these poses, with these loops
-  bool mended = false;                   // whether it began at poses moved by a Mending
+  bool mended = false;                   // whether it began at poses other than the run's
 
   double share() const { return CrossingShare(crossed); }
 };
